@@ -9,8 +9,6 @@
 namespace ilaw::host::testing {
 namespace {
 
-using nlohmann::json;
-
 // Two points, of which the law sees the second; it breaks its promise in the third step. coupled: in the loop
 // of contacts that share nodes.
 json scene_with_broken_law(bool coupled) {
@@ -28,10 +26,7 @@ json scene_with_broken_law(bool coupled) {
 }
 
 Outcome run_breaking(const std::string& promise, bool coupled) {
-  const auto folder = empty_folder();
-  return run_program("run " + written(scene_with_broken_law(coupled), folder).string() + " --out " +
-                         (folder / "out").string(),
-                     "ILAW_BROKEN=" + promise + " ");
+  return run_scene(scene_with_broken_law(coupled), fresh_folder(), "", "ILAW_BROKEN=" + promise + " ");
 }
 
 struct Broken {
@@ -44,38 +39,41 @@ TEST_P(BrokenLaw, IsNamedAndEndsTheRun) {
   for (const bool coupled : {false, true}) {
     const Outcome outcome = run_breaking(GetParam().promise, coupled);
     EXPECT_EQ(outcome.code, 1) << outcome.output;
-    EXPECT_NE(outcome.output.find(GetParam().said), std::string::npos) << outcome.output;
+    EXPECT_THAT(outcome.output, HasSubstr(GetParam().said));
     for (const char* part : {"law 'broken'", "library " ILAW_BROKEN_LAW, "interface 'floor'", "step "})
-      EXPECT_NE(outcome.output.find(part), std::string::npos) << part << " in " << outcome.output;
-    EXPECT_EQ(outcome.output.find('\033'), std::string::npos) << "coupled " << coupled;
+      EXPECT_THAT(outcome.output, HasSubstr(part)) << part;
+    EXPECT_THAT(outcome.output, Not(HasSubstr("\033"))) << "coupled " << coupled;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Faults, BrokenLaw,
-    ::testing::Values(
-        Broken{"status", "after step 2, time 2: interface 'floor' (law 'broken', library " ILAW_BROKEN_LAW
-                         "): found status 200 at node 1, expected 0 to 7"},
-        Broken{"bad_input", "node 1: found the status of bad input, but no code that says so"},
-        Broken{"negative_energy", "node 1: found a dissipated energy of -0.5, expected none below 0"},
-        Broken{"nan_energy", "node 1: found the energy nan, expected a number"},
-        Broken{"nan_impulse", "found the impulse nan, expected a finite one"},
-        Broken{"nan_step", "it reported the stable step nan s, expected none below 0"},
-        Broken{"negative_step", "it reported the stable step -0.500000 s, expected none below 0"},
-        Broken{"v_free", "it wrote to its input v_free"}, Broken{"gap", "it wrote to its input gap"},
-        Broken{"rounding", "it changed how the processor rounds"},
-        Broken{"traps", "it changed how the processor rounds"},
-        Broken{"code", "it returned the code 57, which ABI 1 does not know"},
-        Broken{"negative_code", "code -3, no reason given"}, Broken{"bad_node", "1099511627776"},
-        Broken{"wild_reason", "(the library gave a reason that is no readable text)"},
-        Broken{"steering_text", "(the library gave a reason that is no readable text)"},
-        Broken{"throw", "it threw an exception: what it threw"},
-        Broken{"throw_number", "it threw an exception"}, Broken{"abort", "crashed: Aborted in step 3"},
-        Broken{"crash", "crashed: Segmentation fault in step 3"},
-        Broken{"stack", "crashed: Segmentation fault in step 3"},
-        Broken{"exit", "ended the program in step 3"}, Broken{"exit_at_once", "ended the program in step 3"},
-        Broken{"quick_exit", "ended the program in step 3"}),
-    [](const auto& drawn) { return drawn.param.promise; });
+const Broken faults_broken_law[] = {
+    {"status", "after step 2, time 2: interface 'floor' (law 'broken', library " ILAW_BROKEN_LAW
+               "): found status 200 at node 1, expected 0 to 7"},
+    {"bad_input", "node 1: found the status of bad input, but no code that says so"},
+    {"negative_energy", "node 1: found a dissipated energy of -0.5, expected none below 0"},
+    {"nan_energy", "node 1: found the energy nan, expected a number"},
+    {"nan_impulse", "found the impulse nan, expected a finite one"},
+    {"nan_step", "it reported the stable step nan s, expected none below 0"},
+    {"negative_step", "it reported the stable step -0.500000 s, expected none below 0"},
+    {"v_free", "it wrote to its input v_free"},
+    {"gap", "it wrote to its input gap"},
+    {"rounding", "it changed how the processor rounds"},
+    {"traps", "it changed how the processor rounds"},
+    {"code", "it returned the code 57, which ABI 1 does not know"},
+    {"negative_code", "code -3, no reason given"},
+    {"bad_node", "1099511627776"},
+    {"wild_reason", "(the library gave a reason that is no readable text)"},
+    {"steering_text", "(the library gave a reason that is no readable text)"},
+    {"throw", "it threw an exception: what it threw"},
+    {"throw_number", "it threw an exception"},
+    {"abort", "crashed: Aborted in step 3"},
+    {"crash", "crashed: Segmentation fault in step 3"},
+    {"stack", "crashed: Segmentation fault in step 3"},
+    {"exit", "ended the program in step 3"},
+    {"exit_at_once", "ended the program in step 3"},
+    {"quick_exit", "ended the program in step 3"}};
+INSTANTIATE_TEST_SUITE_P(Faults, BrokenLaw, ::testing::ValuesIn(faults_broken_law),
+                         [](const auto& drawn) { return drawn.param.promise; });
 
 // Nothing of the above is said of a law that keeps its promises.
 TEST(BrokenLaw, ThatKeepsItsPromisesRuns) {
@@ -84,19 +82,17 @@ TEST(BrokenLaw, ThatKeepsItsPromisesRuns) {
 
 // Energy from nowhere: found in random scenes, which are kept with one node and without what does not matter.
 TEST(BrokenLaw, ThatPushesFailsTheStress) {
-  const auto folder = empty_folder();
-  const std::string path = std::filesystem::path(ILAW_BROKEN_LAW).parent_path().string();
+  const auto folder = fresh_folder();
+  const std::string path = fs::path(ILAW_BROKEN_LAW).parent_path().string();
   const auto stress = [&](const char* promise) {
     return run_program("stress --law broken_law --scenes 3 --steps 40 --nodes 20 --keep " + folder.string(),
                        "ILAW_BROKEN=" + std::string(promise) + " ILAW_PATH=" + path + " ");
   };
   const Outcome pushed = stress("push");
   EXPECT_EQ(pushed.code, 1);
-  EXPECT_NE(pushed.output.find("seed 1 (broken) failed: energy added by interfaces: found "),
-            std::string::npos)
-      << pushed.output;
-  const json kept = json::parse(text_of(folder / "broken_1.json"));
-  EXPECT_EQ(kept["doc"].get<std::string>().find("energy added by interfaces: found "), 0U) << kept;
+  EXPECT_THAT(pushed.output, HasSubstr("seed 1 (broken) failed: energy added by interfaces: found "));
+  const json kept = json_of(folder / "broken_1.json");
+  EXPECT_THAT(kept["doc"].get<std::string>(), StartsWith("energy added by interfaces: found ")) << kept;
   EXPECT_EQ(kept["model"]["points"].size(), 1U) << kept;
   EXPECT_EQ(kept["interfaces"].size(), 1U) << kept;
   const Outcome sound = stress("nothing");
@@ -104,12 +100,12 @@ TEST(BrokenLaw, ThatPushesFailsTheStress) {
 }
 
 TEST(BrokenLaw, ThatHangsDoesNotOutliveTwoInterrupts) {
-  const auto folder = empty_folder();
-  const std::string scene = written(scene_with_broken_law(false), folder).string();
+  const auto folder = fresh_folder();
+  const std::string scene = written(scene_with_broken_law(false), folder);
   setenv("ILAW_BROKEN", "hang", 1);
   const pid_t child = start_program({"run", scene, "--out", (folder / "out").string()}, folder / "messages");
   unsetenv("ILAW_BROKEN");
-  for (int k = 0; k < 5000 && !std::filesystem::exists(folder / "out" / "history.csv.partial"); ++k)
+  for (int k = 0; k < 5000 && !fs::exists(folder / "out" / "history.csv.partial"); ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   int status = 0;
@@ -129,32 +125,24 @@ TEST(BrokenLaw, ThatHangsDoesNotOutliveTwoInterrupts) {
   }
   EXPECT_TRUE(has_ended && WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 1);
-  EXPECT_NE(text_of(folder / "messages")
-                .find("law 'broken' of interface 'floor' (library " ILAW_BROKEN_LAW
-                      ") does not come back in step 3"),
-            std::string::npos)
-      << text_of(folder / "messages");
+  EXPECT_THAT(text_of(folder / "messages"),
+              HasSubstr("law 'broken' of interface 'floor' (library " ILAW_BROKEN_LAW
+                        ") does not come back in step 3"));
 }
 
 // Such a library does not take the others with it.
 TEST(BrokenLaw, ThatEndsTheProgramWhenItIsLoadedIsListedAsRefused) {
-  const auto folder = empty_folder();
-  std::filesystem::copy(ILAW_BROKEN_LAW, folder / "broken.so");
+  const auto folder = fresh_folder();
+  fs::copy(ILAW_BROKEN_LAW, folder / "broken.so");
   const std::string path = "ILAW_PATH=" + folder.string() + ":" ILAW_PLUGIN_FOLDER " ILAW_BROKEN=";
   for (const auto& [promise, said] : {std::pair{"abort_at_load", "its code crashed: Aborted"},
                                       std::pair{"exit_at_load", "its code ended the program with code 0"}}) {
-    const Outcome list = run_program("list", path + promise + " ");
-    EXPECT_EQ(list.code, 0);
-    EXPECT_NE(list.output.find("refused: " + (folder / "broken.so").string() + ": " + said),
-              std::string::npos)
-        << list.output;
-    EXPECT_NE(list.output.find("coulomb.so"), std::string::npos) << list.output;
-    const Outcome describe = run_program("describe broken", path + promise + " ");
-    EXPECT_EQ(describe.code, 1);
-    EXPECT_NE(describe.output.find(said), std::string::npos) << describe.output;
-    const Outcome run = run_breaking(promise, false);
-    EXPECT_EQ(run.code, 1);
-    EXPECT_NE(run.output.find("law 'broken' (library " ILAW_BROKEN_LAW ")"), std::string::npos) << run.output;
+    EXPECT_THAT(run_program("list", path + promise + " "),
+                Exits(0, AllOf(HasSubstr("refused: " + (folder / "broken.so").string() + ": " + said),
+                               HasSubstr("coulomb.so"))));
+    EXPECT_THAT(run_program("describe broken", path + promise + " "), Exits(1, HasSubstr(said)));
+    EXPECT_THAT(run_breaking(promise, false),
+                Exits(1, HasSubstr("law 'broken' (library " ILAW_BROKEN_LAW ")")));
   }
 }
 

@@ -6,8 +6,6 @@
 #include "model/bars.hpp"
 #include "study/errors.hpp"
 
-#include <algorithm>
-
 namespace ilaw::host::testing {
 namespace {
 
@@ -41,9 +39,10 @@ std::string doyen_bar(double cfl, int elements) {
 // on 300.
 TEST(BarOnWall, HasExactContactAtTheCriticalStep) {
   for (const int elements : {4, 50, 100, 400}) {
+    GIVEN(elements);
     Scene scene = scene_of(doyen_bar(1.0, elements));
     const double h = 10.0 / 30.0 / elements, rounding = 300.0 * 3.5 * elements * 2.2e-16 * 100.0;
-    ASSERT_NEAR(scene.dt, h, 1e-16) << "elements " << elements;
+    ASSERT_NEAR(scene.dt, h, 1e-16);
     Integrator integrator = integrator_of(scene);
     const std::vector<double> forces = run_forces(scene, integrator, node_of(scene, "bar.left"));
     const int meets = 3 * elements / 2, leaves = meets + 2 * elements;
@@ -51,13 +50,12 @@ TEST(BarOnWall, HasExactContactAtTheCriticalStep) {
       const double exact = step < meets || step >= leaves ? 0.0 : step == meets ? 150.0 : 300.0;
       ASSERT_NEAR(forces[static_cast<std::size_t>(step) - 1], exact, rounding) << elements << ", " << step;
     }
-    EXPECT_NEAR(scene.model->mass().dot(integrator.velocity()), 100.0 - 300.0 * h / 2.0, rounding)
-        << "elements " << elements;
+    EXPECT_NEAR(scene.model->mass().dot(integrator.velocity()), 100.0 - 300.0 * h / 2.0, rounding);
     const int left = node_of(scene, "bar.left");
     const double u = integrator.displacement()[left];
     integrator.step();
     integrator.step();
-    EXPECT_NEAR(integrator.displacement()[left] - u, 2.0 * h * 10.0, rounding * h) << "elements " << elements;
+    EXPECT_NEAR(integrator.displacement()[left] - u, 2.0 * h * 10.0, rounding * h);
   }
 }
 
@@ -65,8 +63,8 @@ TEST(BarOnWall, HasExactContactAtTheCriticalStep) {
 // contact, in which the force is not at its height yet. Instants are kept to a step.
 TEST(BarOnWall, IsNearBelowTheCriticalStep) {
   for (const int elements : {50, 100, 400}) {
-    Scene scene = scene_of(doyen_bar(0.9, elements));
-    Integrator integrator = integrator_of(scene);
+    GIVEN(elements);
+    auto [scene, integrator] = simulation_of(doyen_bar(0.9, elements));
     const std::vector<double> forces = run_forces(scene, integrator, node_of(scene, "bar.left"));
     double first = 0.0, last = 0.0, impulse = 0.0;
     for (std::size_t k = 0; k < forces.size(); ++k) {
@@ -75,13 +73,12 @@ TEST(BarOnWall, IsNearBelowTheCriticalStep) {
       last = static_cast<double>(k + 1) * scene.dt;
       if (first == 0.0) first = last;
     }
-    EXPECT_NEAR(first, 0.5, scene.dt) << "elements " << elements;
-    EXPECT_NEAR(last, 7.0 / 6.0, scene.dt) << "elements " << elements;
+    EXPECT_NEAR(first, 0.5, scene.dt);
+    EXPECT_NEAR(last, 7.0 / 6.0, scene.dt);
     const double part_of_front = std::pow(elements, -2.0 / 3.0);
-    EXPECT_NEAR(impulse / (2.0 / 3.0), 300.0, 300.0 * 0.15 * part_of_front) << elements;
-    EXPECT_NEAR(scene.model->mass().dot(integrator.velocity()), 100.0, 100.0 * 0.3 * part_of_front)
-        << "elements " << elements;
-    EXPECT_LE(integrator.energy().balance_error, 1e-14) << "elements " << elements;
+    EXPECT_NEAR(impulse / (2.0 / 3.0), 300.0, 300.0 * 0.15 * part_of_front);
+    EXPECT_NEAR(scene.model->mass().dot(integrator.velocity()), 100.0, 100.0 * 0.3 * part_of_front);
+    EXPECT_LE(integrator.energy().balance_error, 1e-14);
   }
 }
 
@@ -170,14 +167,14 @@ ContactNode contact_node(double cfl, int elements) {
   constexpr double length = 0.254, young = 2.1e11, density = 7847.0, gap = 1e-3 * length, speed = 5.0;
   const double c = std::sqrt(young / density), meets = gap / speed, leaves = meets + 2.0 * length / c;
   const double end = leaves + 6.0 * length / c;
-  Scene scene = scene_of(R"({"model": {"type": "bars", "bars": [{"name": "bar", "start": )" + number(gap) +
-                         R"(, "length": 0.254, "elements": )" + std::to_string(elements) +
-                         R"(, "young": 2.1e11, "density": 7847.0, "section": 6.45e-4, "velocity": -5.0}]},
-    "time": {"cfl": )" + number(cfl) +
-                         R"(, "end": )" + number(end) + R"(},
+  auto [scene, integrator] =
+      simulation_of(R"({"model": {"type": "bars", "bars": [{"name": "bar", "start": )" + number(gap) +
+                    R"(, "length": 0.254, "elements": )" + std::to_string(elements) +
+                    R"(, "young": 2.1e11, "density": 7847.0, "section": 6.45e-4, "velocity": -5.0}]},
+    "time": {"cfl": )" +
+                    number(cfl) + R"(, "end": )" + number(end) + R"(},
     "interfaces": [{"law": "contact", "parameters": {"activation": "moreau"}, "nodes": "bar.left",
                     "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})");
-  Integrator integrator = integrator_of(scene);
   double u_error = 0.0, u_sum = 0.0, v_error = 0.0, v_sum = 0.0, peak_force = 0.0;
   while (integrator.steps() < scene.steps) {
     const double v_before = integrator.velocity()[0];
@@ -236,8 +233,7 @@ std::string glued_bar(double cfl, double memory, double end) {
 TEST(GluedBar, BreaksWhenTheWindowHasItsImpulse) {
   for (const double cfl : {1.0, 0.9})
     for (const double memory : {0.55, 1.5}) {
-      Scene scene = scene_of(glued_bar(cfl, memory, 2.5));
-      Integrator integrator = integrator_of(scene);
+      auto [scene, integrator] = simulation_of(glued_bar(cfl, memory, 2.5));
       double breaks = 0.0;
       while (integrator.steps() < scene.steps) {
         integrator.step();
@@ -254,8 +250,7 @@ TEST(GluedBar, BreaksWhenTheWindowHasItsImpulse) {
 // 2F tau <= R_Y: the window never holds R_Y. The glue's force is 2F and 0 in turns of 2L/c.
 TEST(GluedBar, HoldsWhenTheWindowIsTooShort) {
   for (const double cfl : {1.0, 0.9}) {
-    Scene scene = scene_of(glued_bar(cfl, 0.4, 12.0));
-    Integrator integrator = integrator_of(scene);
+    auto [scene, integrator] = simulation_of(glued_bar(cfl, 0.4, 12.0));
     while (integrator.steps() < scene.steps) {
       integrator.step();
       ASSERT_EQ(scene.interfaces[0]->status(0), ILAW_BONDED) << integrator.time();
@@ -294,8 +289,7 @@ double rounding_of(const Integrator& integrator, int elements) {
 TEST(BarBetweenWalls, KeepsItsEnergyUpToTheCriticalStep) {
   for (const double cfl : {0.5, 0.9, 0.999, 1.0}) {
     constexpr int elements = 10;
-    Scene scene = scene_of(bar_between_walls(cfl, elements, 1.0, 1e5 * cfl / elements));
-    Integrator integrator = integrator_of(scene);
+    auto [scene, integrator] = simulation_of(bar_between_walls(cfl, elements, 1.0, 1e5 * cfl / elements));
     double energy = total(integrator.energy());
     const double initial = energy;
     double speed = 0.0;
@@ -323,8 +317,7 @@ TEST(BarBetweenWalls, KeepsItsEnergyUpToTheCriticalStep) {
 TEST(BarBetweenWalls, LosesWhatItsImpactsTakeAndGainsNothing) {
   for (const double cfl : {0.5, 0.9, 0.999, 1.0}) {
     constexpr int elements = 10;
-    Scene scene = scene_of(bar_between_walls(cfl, elements, 0.9, 1e5 * cfl / elements));
-    Integrator integrator = integrator_of(scene);
+    auto [scene, integrator] = simulation_of(bar_between_walls(cfl, elements, 0.9, 1e5 * cfl / elements));
     const int left = node_of(scene, "bar.left");
     double energy = total(integrator.energy());
     const double initial = energy;
@@ -352,9 +345,7 @@ TEST(BarBetweenWalls, LosesWhatItsImpactsTakeAndGainsNothing) {
 }
 
 TEST(BarBetweenWalls, ClosesItsBalanceOverAMillionSteps) {
-  Scene scene = scene_of(bar_between_walls(0.9, 10, 0.9, 0.9 * 1e6 / 10));
-  Integrator integrator = integrator_of(scene);
-  while (integrator.steps() < scene.steps) integrator.step();
+  auto [scene, integrator] = run_to_end(bar_between_walls(0.9, 10, 0.9, 0.9 * 1e6 / 10));
   EXPECT_GE(integrator.steps(), 1000000);
   EXPECT_LE(integrator.energy().balance_error, 1e-10);
 }

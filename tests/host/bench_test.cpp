@@ -1,19 +1,12 @@
 // `ilaw bench` as a user sees it: what it prints for every law, what it counts, what it refuses. How fast
 // anything is depends on the machine, and is not asserted.
 #include "host_runner.hpp"
-#include "program_runner.hpp"
 #include "support/law_cases.hpp"
 
-#include <nlohmann/json.hpp>
-
-#include <cmath>
-#include <fstream>
 #include <regex>
 
 namespace ilaw::host::testing {
 namespace {
-
-using nlohmann::json;
 
 json measured(const std::string& arguments, const std::string& before = "") {
   const Outcome outcome = run_program("bench " + arguments + " --json --repetitions 1", before);
@@ -127,13 +120,13 @@ TEST(Bench, LeavesATableAndAPicture) {
   const Outcome outcome =
       run_program("bench contact coulomb --nodes 20 30 --repetitions 1 --out " + folder.string());
   EXPECT_EQ(outcome.code, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find("coulomb friction=0.3; scalar H local aos"), std::string::npos);
+  EXPECT_THAT(outcome.output, HasSubstr("coulomb friction=0.3; scalar H local aos"));
   const std::string csv = text_of(folder / "bench.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "law,case,nodes,ns_per_node,bytes_per_node,triad_gb_per_s,ratio,isa,scalar_share");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
-  EXPECT_TRUE(std::filesystem::exists(folder / "bench.png"));
-  EXPECT_NE(text_of(folder / "bench.svg").find("coulomb"), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder / "bench.png"));
+  EXPECT_THAT(text_of(folder / "bench.svg"), HasSubstr("coulomb"));
 }
 
 struct PanelEdges {
@@ -154,7 +147,7 @@ std::vector<PanelEdges> panels_in(const std::string& script) {
   return panels;
 }
 
-std::string file_of_cases(const std::filesystem::path& folder, const json& entries) {
+std::string file_of_cases(const fs::path& folder, const json& entries) {
   std::ofstream(folder / "cases.json") << json{{"benchmarks", entries}};
   return "--cases " + (folder / "cases.json").string();
 }
@@ -235,17 +228,17 @@ TEST(Options, RefuseWhatIsNoNumberOfTheirRange) {
       const Outcome outcome = run_program(text + "=" + value);
       const std::string said = option + ": found '" + value + "', expected a number ";
       EXPECT_EQ(outcome.code, 2) << text << " " << value;
-      EXPECT_NE(outcome.output.find(said + allowed), std::string::npos) << text << ": " << outcome.output;
+      EXPECT_THAT(outcome.output, HasSubstr(said + allowed)) << text;
     }
 }
 
 // A law would take another one without a word.
 TEST(Environment, AnInstructionSetThatNoLawKnowsIsRefused) {
   for (const char* value : {"", "V3", "avx2", "v2", "v5", "v3 "}) {
-    const Outcome outcome = run_program("list", std::string("ILAW_ISA='") + value + "' ");
-    EXPECT_EQ(outcome.code, 2) << value;
-    EXPECT_EQ(outcome.output, std::string("ilaw: ILAW_ISA: found '") + value +
-                                  "', expected one of baseline, v3, v4, or no such variable\n");
+    EXPECT_THAT(run_program("list", std::string("ILAW_ISA='") + value + "' "),
+                Exits(2, std::string("ilaw: ILAW_ISA: found '") + value +
+                             "', expected one of baseline, v3, v4, or no such variable\n"))
+        << value;
   }
   for (const char* value : {"baseline", "v3", "v4"})
     EXPECT_EQ(run_program("list", std::string("ILAW_ISA=") + value + " ").code, 0) << value;
@@ -267,15 +260,10 @@ TEST(Bench, RefusesWhatCannotBeMeasured) {
       {ILAW_BROKEN_LAW " --float", "it does not serve arrays of float"},
       {"--cases nowhere.json", "nowhere.json: no such file"}};
   for (const auto& [arguments, said] : refusals) {
-    const Outcome outcome = run_program(std::string("bench ") + arguments);
-    EXPECT_EQ(outcome.code, 2) << arguments << ": " << outcome.output;
-    EXPECT_NE(outcome.output.find(said), std::string::npos) << arguments << ": " << outcome.output;
+    EXPECT_THAT(run_program(std::string("bench ") + arguments), Exits(2, HasSubstr(said))) << arguments;
   }
-  const Outcome served = run_program("bench " ILAW_VISCOUS_C " --delassus full");
-  EXPECT_EQ(served.code, 2);
-  EXPECT_NE(served.output.find("found H full, which it does not serve; expected one of scalar"),
-            std::string::npos)
-      << served.output;
+  EXPECT_THAT(run_program("bench " ILAW_VISCOUS_C " --delassus full"),
+              Exits(2, HasSubstr("found H full, which it does not serve; expected one of scalar")));
 }
 
 }  // namespace

@@ -4,16 +4,12 @@
 #include <omp.h>
 #include <Eigen/Eigenvalues>
 
-#include <nlohmann/json.hpp>
-
 #include <stdexcept>
 
 namespace ilaw::host::testing {
 namespace {
 
-using nlohmann::json;
-
-Scene scene_of(const json& source) { return testing::scene_of(source.dump()); }
+Scene scene_of(const json& source) { return testing::scene_of(source); }
 
 json material(const char* type, double ratio) {
   return {{"type", type}, {"young", 3.0}, {"poisson", ratio}, {"density", 2.0}};
@@ -132,12 +128,11 @@ Eigen::Vector3d momentum(const Scene& scene, const Integrator& integrator) {
 // terms of a modulus times (element size) u, each rounded; all nodes stay within 10 of the origin.
 void expect_conserved(const char* law, const char* element, double ratio) {
   const double modulus = std::max(3.0, 3.0 / (3.0 * (1.0 - 2.0 * ratio)));
-  Scene scene = scene_of(
+  auto [scene, integrator] = simulation_of(scene_of(
       {{"model", block({1.0, 0.5, 0.4}, {4, 3, 2}, material(law, ratio), element)},
        {"time", {{"cfl", 0.5}, {"end", 20.0}}},
        {"loads", {shock("b.x_min", {0.002, -0.002, 0.004}), shock("b.x_max", {-0.001, 0.003, -0.001})}},
-       {"interfaces", json::array()}});
-  Integrator integrator = integrator_of(scene);
+       {"interfaces", json::array()}}));
   integrator.step();
   const Eigen::Vector3d start = momentum(scene, integrator), turn = integrator.angular_momentum();
   EXPECT_NEAR((start - 12.0 * Eigen::Vector3d(0.001, 0.001, 0.003)).norm(), 0.0, 1e-15);
@@ -173,8 +168,7 @@ struct Motion {
 Motion motion_with(int threads, const json& source, int steps) {
   const int before = omp_get_max_threads();
   omp_set_num_threads(threads);
-  Scene scene = scene_of(source);
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(source);
   while (integrator.steps() < steps) integrator.step();
   omp_set_num_threads(before);
   return {integrator.displacement(), integrator.velocity(),

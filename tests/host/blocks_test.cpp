@@ -8,9 +8,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
-#include <random>
-#include <set>
-
 namespace ilaw::host {
 
 using Kind = std::pair<MaterialLaw, Element>;

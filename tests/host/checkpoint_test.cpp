@@ -2,38 +2,21 @@
 #include "results/checkpoint.hpp"
 #include "base/bytes.hpp"
 #include "host_runner.hpp"
-#include "program_runner.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <omp.h>
 
-#include <array>
-#include <cmath>
 #include <csignal>
 #include <cstring>
-#include <map>
 #include <new>
-#include <random>
-#include <sstream>
 #include <thread>
 
 namespace ilaw::host::testing {
 namespace {
 
-using nlohmann::json;
-
-json shipped(const std::string& name) { return read_scene_source(scene_files::named(name + ".json")); }
-
 std::string saved(const Integrator& integrator) {
   std::ostringstream state;
   integrator.save(state);
   return state.str();
-}
-
-bool same_bits(const Dofs& a, const Dofs& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
 }
 
 // ---- in one process -------------------------------------------------------------------------------------
@@ -92,7 +75,7 @@ TEST_P(Resumed, GoesOnToTheSameBits) {
   omp_set_num_threads(1);
   std::mt19937 engine(30);
   for (int k = 0; k < 3; ++k) {
-    Scene scene = scene_of(GetParam().second.dump()), copy = scene_of(GetParam().second.dump());
+    Scene scene = scene_of(GetParam().second), copy = scene_of(GetParam().second);
     Integrator uninterrupted = integrator_of(scene), resumed = integrator_of(copy);
     const auto stop = std::uniform_int_distribution<std::int64_t>(0, scene.steps - 1)(engine);
     while (uninterrupted.steps() < stop) uninterrupted.step();
@@ -131,24 +114,19 @@ json long_scene() {
   return scene;
 }
 
-std::filesystem::path written(const json& scene, const std::filesystem::path& folder) {
-  std::ofstream(folder / "scene.json") << scene.dump();
-  return folder / "scene.json";
-}
-
 // What must not depend on whether a run was interrupted: all but the time it took, and which contacts were
 // active, which depends on when the near ones were last found.
-json results_of(const std::filesystem::path& folder) {
-  json summary = json::parse(text_of(folder / "summary.json"));
+json results_of(const fs::path& folder) {
+  json summary = json_of(folder / "summary.json");
   for (const char* key : {"seconds", "execution"}) summary.erase(key);
   return summary;
 }
 
-void expect_same_results(const std::filesystem::path& a, const std::filesystem::path& b) {
+void expect_same_results(const fs::path& a, const fs::path& b) {
   EXPECT_EQ(text_of(a / "history.csv"), text_of(b / "history.csv"));
   EXPECT_EQ(results_of(a), results_of(b));
-  const json series = json::parse(text_of(a / "fields.vtu.series"));
-  EXPECT_EQ(series, json::parse(text_of(b / "fields.vtu.series")));
+  const json series = json_of(a / "fields.vtu.series");
+  EXPECT_EQ(series, json_of(b / "fields.vtu.series"));
   EXPECT_GT(series["files"].size(), 3U);
   for (const json& file : series["files"]) {
     const std::string name = file["name"];
@@ -161,7 +139,7 @@ class Interrupted : public ::testing::TestWithParam<int> {};
 // Ended again and again, a while after a new checkpoint, and resumed each time.
 TEST_P(Interrupted, LeavesTheResultsOfAnUninterruptedRun) {
   const auto whole = fresh_folder(), parts = fresh_folder();
-  const std::string scene = written(long_scene(), whole).string();
+  const std::string scene = written(long_scene(), whole);
   ASSERT_EQ(run_program("run " + scene + " --out " + whole.string()).code, 0);
   std::mt19937 engine(31);
   std::vector<std::string> command{"run", scene, "--out", parts.string(), "--checkpoint-every", "100"};
@@ -181,7 +159,7 @@ TEST_P(Interrupted, LeavesTheResultsOfAnUninterruptedRun) {
   const Outcome last =
       run_program("run " + scene + " --out " + parts.string() + " --checkpoint-every 100 --resume");
   EXPECT_EQ(last.code, 0) << last.output;
-  EXPECT_GE(json::parse(text_of(parts / "summary.json"))["execution"]["resumed_at_step"], 200);
+  EXPECT_GE(json_of(parts / "summary.json")["execution"]["resumed_at_step"], 200);
   expect_same_results(whole, parts);
 }
 
@@ -191,23 +169,23 @@ INSTANTIATE_TEST_SUITE_P(Checkpoint, Interrupted, ::testing::Values(SIGKILL, SIG
 // Where it stopped by itself a run says how to go on; its files are whole.
 TEST(Checkpoint, IsWrittenWhereARunIsInterrupted) {
   const auto folder = fresh_folder();
-  const std::string scene = written(long_scene(), folder).string();
+  const std::string scene = written(long_scene(), folder);
   const pid_t child = start_program({"run", scene, "--out", folder.string(), "--checkpoint-every", "100000"},
                                     folder / "messages");
-  for (int k = 0; k < 5000 && !std::filesystem::exists(folder / "history.csv.partial"); ++k)
+  for (int k = 0; k < 5000 && !fs::exists(folder / "history.csv.partial"); ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   kill(child, SIGTERM);
   int status = 0;
   waitpid(child, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 1);
-  EXPECT_NE(text_of(folder / "messages").find("--resume goes on from there"), std::string::npos);
-  const json summary = json::parse(text_of(folder / "summary.json"));
+  EXPECT_THAT(text_of(folder / "messages"), HasSubstr("--resume goes on from there"));
+  const json summary = json_of(folder / "summary.json");
   EXPECT_TRUE(summary["interrupted"]);
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
+  for (const auto& entry : fs::directory_iterator(folder))
     EXPECT_NE(entry.path().extension(), ".partial") << entry.path();
   EXPECT_EQ(run_program("run " + scene + " --out " + folder.string() + " --resume").code, 0);
-  EXPECT_EQ(json::parse(text_of(folder / "summary.json"))["execution"]["resumed_at_step"], summary["steps"]);
+  EXPECT_EQ(json_of(folder / "summary.json")["execution"]["resumed_at_step"], summary["steps"]);
 }
 
 // A disk that is full ends a run with what it took, whole rows, and --resume goes on once there is room. Here
@@ -216,19 +194,17 @@ TEST(Checkpoint, OutlivesAFullDisk) {
   const auto whole = fresh_folder(), full = fresh_folder();
   json scene = shipped("bouncing_ball");
   scene["time"]["end"] = 50.0;
-  const std::string file = written(scene, whole).string();
+  const std::string file = written(scene, whole);
   ASSERT_EQ(run_program("run " + file + " --out " + whole.string()).code, 0);
   const std::string command = "run " + file + " --out " + full.string() + " --checkpoint-every 1000";
-  const Outcome failed = run_program(command, "ulimit -f 2048; ");
-  EXPECT_EQ(failed.code, 1);
-  EXPECT_NE(failed.output.find("history.csv: cannot be written: File too large"), std::string::npos)
-      << failed.output;
+  EXPECT_THAT(run_program(command, "ulimit -f 2048; "),
+              Exits(1, HasSubstr("history.csv: cannot be written: File too large")));
   const std::string rows = text_of(full / "history.csv"), all = text_of(whole / "history.csv");
   EXPECT_GT(rows.size(), 900000U);
   EXPECT_EQ(rows.back(), '\n');
   EXPECT_EQ(rows, all.substr(0, rows.size()));
-  EXPECT_FALSE(std::filesystem::exists(full / "history.csv.partial"));
-  EXPECT_NE(json::parse(text_of(full / "summary.json"))["failure"], "");
+  EXPECT_FALSE(fs::exists(full / "history.csv.partial"));
+  EXPECT_NE(json_of(full / "summary.json")["failure"], "");
   const Outcome resumed = run_program(command + " --resume");
   EXPECT_EQ(resumed.code, 0) << resumed.output;
   EXPECT_EQ(text_of(full / "history.csv"), all);
@@ -239,41 +215,32 @@ TEST(Checkpoint, OutlivesAFullDisk) {
 TEST(Checkpoint, OfNoRunOrAnotherOneIsRefused) {
   const auto folder = fresh_folder();
   const json scene = shipped("postit_test3");
-  const std::string file = written(scene, folder).string(), out = " --out " + folder.string();
+  const std::string file = written(scene, folder), out = " --out " + folder.string();
   const std::string path = (folder / "checkpoint.cbor").string();
-  const Outcome none = run_program("run " + file + out + " --resume");
-  EXPECT_EQ(none.code, 2);
-  EXPECT_NE(none.output.find(path + ": found no checkpoint to resume from"), std::string::npos)
-      << none.output;
+  EXPECT_THAT(run_program("run " + file + out + " --resume"),
+              Exits(2, HasSubstr(path + ": found no checkpoint to resume from")));
   EXPECT_EQ(run_program("run " + file + " --resume --out " + (folder / "new").string()).code, 2);
-  EXPECT_FALSE(std::filesystem::exists(folder / "new"));
+  EXPECT_FALSE(fs::exists(folder / "new"));
   ASSERT_EQ(run_program("run " + file + out + " --checkpoint-every 500").code, 0);
   json other = scene;
   other["interfaces"][0]["parameters"]["memory"] = 0.081;
   written(other, folder);
-  const Outcome another = run_program("run " + file + out + " --resume");
-  EXPECT_EQ(another.code, 2);
-  EXPECT_NE(another.output.find(path + ": is of another scene: /interfaces/0/parameters/memory differs"),
-            std::string::npos)
-      << another.output;
+  EXPECT_THAT(run_program("run " + file + out + " --resume"),
+              Exits(2, HasSubstr(path + ": is of another scene: /interfaces/0/parameters/memory differs")));
   written(scene, folder);
-  std::filesystem::remove(folder / "history.csv");
-  const Outcome lost = run_program("run " + file + out + " --resume");
-  EXPECT_EQ(lost.code, 2);
-  EXPECT_NE(lost.output.find("history.csv: No such file or directory, expected the first "),
-            std::string::npos)
-      << lost.output;
+  fs::remove(folder / "history.csv");
+  EXPECT_THAT(run_program("run " + file + out + " --resume"),
+              Exits(2, HasSubstr("history.csv: No such file or directory, expected the first ")));
   std::ofstream(folder / "history.csv") << "time\n";
-  EXPECT_NE(
-      run_program("run " + file + out + " --resume").output.find("history.csv: found 5 bytes, expected"),
-      std::string::npos);
+  EXPECT_THAT(run_program("run " + file + out + " --resume").output,
+              HasSubstr("history.csv: found 5 bytes, expected"));
   std::ofstream(folder / "checkpoint.cbor") << "damaged";
   EXPECT_EQ(run_program("run " + file + out + " --resume").code, 2);
   EXPECT_EQ(run_program("run " + file + out + " --checkpoint-every 0").code, 2);
 }
 
 // Of a history of a few bytes, which it writes.
-FileMark history_in(const std::filesystem::path& folder) {
+FileMark history_in(const fs::path& folder) {
   std::ofstream(folder / "history.csv") << "time\n";
   FileMark mark;
   mark.add("time\n", 5);
@@ -284,8 +251,7 @@ FileMark history_in(const std::filesystem::path& folder) {
 // then fails without a crash.
 TEST(Checkpoint, DamagedAnywhereIsRefused) {
   const auto folder = fresh_folder();
-  Scene scene = scene_of(shipped("bouncing_ball").dump());
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(shipped("bouncing_ball"));
   for (int k = 0; k < 100; ++k) integrator.step();
   write_checkpoint(scene, integrator, {history_in(folder), json::array()}, folder);
   const std::string good = text_of(folder / "checkpoint.cbor");
@@ -383,8 +349,8 @@ TEST(Checkpoint, OfAnotherLawOrStateVersionIsRefused) {
                                                                    {"version", "0.0.1"},
                                                                    {"law", "tie"}}) {
     const std::string reason = refusal_of(key, value);
-    EXPECT_NE(reason.find("is of other laws"), std::string::npos) << reason;
-    EXPECT_NE(reason.find("/0/" + key + " is now "), std::string::npos) << reason;
+    EXPECT_THAT(reason, HasSubstr("is of other laws"));
+    EXPECT_THAT(reason, HasSubstr("/0/" + key + " is now "));
   }
 }
 

@@ -5,12 +5,10 @@
 namespace ilaw::host::testing {
 namespace {
 
-Scene shipped(const char* name, double dt = 0.0) {
-  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
-  const std::filesystem::path file = scene_files::named(name);
-  nlohmann::json source = read_scene_source(file);
-  if (dt > 0.0) source["time"]["dt"] = dt;
-  return read_scene(source, file);
+Scene scene_with_step(const char* name, double dt) {
+  json source = shipped(name);
+  source["time"]["dt"] = dt;
+  return scene_of(source);
 }
 
 struct Event {
@@ -34,7 +32,7 @@ void expect_first_order(const char* scene, double bound, std::vector<Event> (*ev
                         const std::vector<Event>& exact) {
   std::vector<double> steps, errors;
   for (double h = 0.0073; h > 1e-5; h /= 2.0) {
-    Scene run = shipped(scene, h);
+    Scene run = scene_with_step(scene, h);
     const double error = distance(events(run), exact);
     EXPECT_LE(error, bound * h) << scene << ", h = " << h;
     steps.push_back(h);
@@ -70,7 +68,7 @@ std::vector<Event> impacts(Scene& scene) {
 // A step may be one late (C = 1) and come with the spring's change of speed, of at most 10 d h = 5 h: C = 6.
 TEST(ImpactOscillator, ImpactsAtExactInstantsWithExactSpeeds) {
   ASSERT_EQ(exact_impacts().size(), 5U);
-  expect_first_order("impact_oscillator.json", 6.0, impacts, exact_impacts());
+  expect_first_order("impact_oscillator", 6.0, impacts, exact_impacts());
 }
 
 // ---- stick-slip ----
@@ -104,7 +102,7 @@ std::vector<Event> turns(Scene& scene) {
 // mean.
 TEST(StickSlip, TurnsAtExactInstants) {
   ASSERT_EQ(exact_turns().size(), 7U);
-  expect_first_order("stick_slip.json", 8.0, turns, exact_turns());
+  expect_first_order("stick_slip", 8.0, turns, exact_turns());
 }
 
 // ---- double cantilever ----
@@ -112,9 +110,7 @@ TEST(StickSlip, TurnsAtExactInstants) {
 // with the correction for the root's rotation of Williams (1989), chi = 0.605 for an isotropic beam of nu =
 // 0. What was broken, over toughness and width, is the crack's length.
 TEST(DoubleCantilever, OpensAsBeamTheorySays) {
-  Scene scene = shipped("dcb_peel.json");
-  Integrator integrator = integrator_of(scene);
-  while (integrator.steps() < scene.steps) integrator.step();
+  auto [scene, integrator] = run_to_end(shipped("dcb_peel"));
   const double t = 0.05, w = 0.01, toughness = 5e-8, width = 0.0125;
   const double crack = std::pow(3.0 * t * t * t * w * w / (8.0 * toughness), 0.25) - 0.605 * t;
   const double opened = integrator.energy().by_law[ILAW_ENERGY_RUPTURE] / (toughness * width);
@@ -128,8 +124,7 @@ TEST(DoubleCantilever, OpensAsBeamTheorySays) {
 TEST(MixedModeBar, SoftensAndBreaksAsMixedTractionSays) {
   const double area = 0.01, toughness = 2e-6 + 6e-6 / 16.0, strength = std::sqrt(1e-6 + 3e-6 / 16.0);
   const double w = 2.0 * toughness / strength;
-  Scene scene = shipped("mixed_mode_bar.json");
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(shipped("mixed_mode_bar"));
   double largest = 0.0;
   while (integrator.steps() < scene.steps) {
     integrator.step();
@@ -164,13 +159,13 @@ Strut exact_strut(double t) {
 // mass.
 TEST(LandingGear, SwingsAsADampedOscillatorOnAFootThatStands) {
   for (const double h : {1e-3, 7.3e-4, 1.1e-4}) {
-    nlohmann::json source = read_scene_source(scene_files::named("landing_gear.json"));
+    json source = shipped("landing_gear");
     source["time"]["dt"] = h;
     source["output"]["every"] = 1;
     const Ran run = ran(source);
-    const auto at = [&](const char* column, std::size_t k) { return run.history.at(column)[k]; };
+    const auto at = [&](const char* column, std::size_t k) { return run[column][k]; };
     double largest = 0.0;
-    for (std::size_t k = 0; k < run.history.at("time").size(); ++k) {
+    for (std::size_t k = 0; k < run.rows(); ++k) {
       const double t = at("time", k) - 0.2;
       const std::string where = "h " + number(h) + ", time " + number(t + 0.2);
       if (t < 2.0 * h) continue;
@@ -194,7 +189,7 @@ TEST(LandingGear, SwingsAsADampedOscillatorOnAFootThatStands) {
 TEST(Seal, PressesWithItsSqueezeAndPartOfThePressure) {
   const double young = 5e6, nu = 0.45, squeeze = 0.1, area = 1e-4, pressure = 2e6;
   for (const double cfl : {0.7, 0.53, 0.41}) {
-    nlohmann::json source = read_scene_source(scene_files::named("seal.json"));
+    json source = shipped("seal");
     source["time"]["cfl"] = cfl;
     const Ran run = ran(source);
     const double pushed = (1.0 - squeeze) * pressure * area;
@@ -220,17 +215,16 @@ TEST(RollingWheel, PullsAsTheBrushModel) {
   const double normal = 2.0 * k * a * a * a / (3.0 * R);
   for (const double h : {1e-4, 1.3e-4, 7e-5})
     for (const double slip : {0.0, 0.015, 0.03}) {
-      nlohmann::json source = read_scene_source(scene_files::named("rolling_wheel.json"));
+      GIVEN(h, slip);
+      json source = shipped("rolling_wheel");
       source["time"]["dt"] = h;
       source["interfaces"][0]["obstacle"]["rate"] = -(1.0 + slip) / (R - d / 3.0);
       const Ran run = ran(source);
       const double q = std::min(1.0, slip * R / (mu * a));
       const double pull = mu * normal * (1.0 - (1.0 - q) * (1.0 - q) * (1.0 - q));
       EXPECT_NEAR(run.mean_after(0.066, "wheel.F0"), -pull,
-                  k * a * a * a * a / (24.0 * R * R) + 0.01 * mu * normal)
-          << "slip " << slip << ", h " << h;
-      EXPECT_NEAR(run.mean_after(0.066, "wheel.F1"), -normal, 0.01 * normal)
-          << "slip " << slip << ", h " << h;
+                  k * a * a * a * a / (24.0 * R * R) + 0.01 * mu * normal);
+      EXPECT_NEAR(run.mean_after(0.066, "wheel.F1"), -normal, 0.01 * normal);
     }
 }
 

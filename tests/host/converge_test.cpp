@@ -1,26 +1,15 @@
 // `ilaw converge` on scenes with known answers.
-#include "host_runner.hpp"
-#include "program_runner.hpp"
+#include "run_result.hpp"
 #include "study/errors.hpp"
-
-#include <nlohmann/json.hpp>
-
-#include <algorithm>
-#include <array>
-#include <map>
 
 namespace ilaw::host::testing {
 namespace {
 
-using nlohmann::json;
-
 constexpr double never = ContactInstants::none;
-
-json shipped(const std::string& name) { return read_scene_source(scene_files::named(name + ".json")); }
 
 struct Study {
   Outcome outcome;
-  std::filesystem::path folder;
+  fs::path folder;
   json orders;                                       // converge.json
   std::map<std::string, std::vector<double>> table;  // converge.csv, by column
 };
@@ -29,25 +18,14 @@ Study study_of(const json& scene, const std::string& options) {
   Study study;
   study.folder = fresh_folder();
   std::ofstream(study.folder / "scene.json") << scene.dump();
-  const std::filesystem::path results = study.folder / "results";
+  const fs::path results = study.folder / "results";
   study.outcome = run_program("converge " + (study.folder / "scene.json").string() + " --out " +
                               results.string() + " " + options);
   if (study.outcome.code != 0) return study;
-  study.orders = json::parse(text_of(results / "converge.json"));
-  std::istringstream table(text_of(results / "converge.csv"));
-  std::string header, row, entry;
-  std::getline(table, header);
-  std::vector<std::string> names;
-  for (std::istringstream line(header); std::getline(line, entry, ',');) names.push_back(entry);
-  while (std::getline(table, row)) {
-    std::istringstream line(row);
-    for (const std::string& name : names) {
-      std::getline(line, entry, ',');
-      study.table[name].push_back(std::strtod(entry.c_str(), nullptr));
-    }
-  }
+  study.orders = json_of(results / "converge.json");
+  study.table = table_of(results / "converge.csv");
   EXPECT_EQ(text_of(results / "converge.png").substr(1, 3), "PNG");
-  EXPECT_NE(text_of(results / "converge.svg").find("<svg"), std::string::npos);
+  EXPECT_THAT(text_of(results / "converge.svg"), HasSubstr("<svg"));
   return study;
 }
 
@@ -108,8 +86,8 @@ TEST(Converge, GluedBarAtTheCriticalStepHasNoOrderInTheInstant) {
   for (const double error : study.table.at("v_L1")) EXPECT_NEAR(error, 1.0, 1e-6);
   EXPECT_NEAR(order_in(study, "u_L2"), 1.0, 0.05);
   const std::string last = study.outcome.output.substr(study.outcome.output.rfind("order"));
-  EXPECT_NE(last.find("          -"), std::string::npos) << last;
-  EXPECT_EQ(last.find("-0.00"), std::string::npos) << last;
+  EXPECT_THAT(last, HasSubstr("          -"));
+  EXPECT_THAT(last, Not(HasSubstr("-0.00")));
 }
 
 // Rupture is found at the end of the step in which the window passes the limit.
@@ -201,8 +179,7 @@ Peel peel_at(int level) {
   source["time"]["end"] = 1.55;
   source["output"]["watch"] = json::array();
   for (int row = 0; row <= 20; ++row) source["output"]["watch"].push_back({{"near", {0.05 * row, 0.0, 0.0}}});
-  Scene scene = scene_of(source.dump());
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(source);
   Interface& bond = *scene.interfaces[0];
   std::vector<int> contact_indices;
   for (const int node : scene.output.watch) {
@@ -271,64 +248,61 @@ TEST(Converge, DrawsIntoAFolderWithAQuote) {
   const auto folder = fresh_folder() / "it's here";
   json scene = ball(0.5);
   scene["title"] = "The ball's flight";
-  std::filesystem::create_directories(folder);
+  fs::create_directories(folder);
   std::ofstream(folder / "scene.json") << scene;
   const Outcome outcome = run_program("converge \"" + (folder / "scene.json").string() +
                                       "\" --levels 3 --out \"" + folder.string() + "\"");
   EXPECT_EQ(outcome.code, 0) << outcome.output;
-  EXPECT_TRUE(std::filesystem::exists(folder / "converge.png"));
-  EXPECT_EQ(json::parse(text_of(folder / "converge.json"))["title"], scene["title"]);
+  EXPECT_TRUE(fs::exists(folder / "converge.png"));
+  EXPECT_EQ(json_of(folder / "converge.json")["title"], scene["title"]);
 }
 
 TEST(Converge, RefusesWhatItCannotCompare) {
   const auto refusal = [](const json& scene, const std::string& options) {
     const Study study = study_of(scene, options);
     EXPECT_EQ(study.outcome.code, 2) << study.outcome.output;
-    EXPECT_FALSE(std::filesystem::exists(study.folder / "results"));
+    EXPECT_FALSE(fs::exists(study.folder / "results"));
     return study.outcome.output;
   };
   json unwatched = shipped("postit_test2");
   unwatched["output"].erase("watch");
-  EXPECT_NE(refusal(unwatched, "").find("/output/watch: found no node, expected those to compare"),
-            std::string::npos);
-  EXPECT_NE(refusal(shipped("postit_test2"), "--refine mesh").find("/converge/refine: found \"mesh\""),
-            std::string::npos);
+  EXPECT_THAT(refusal(unwatched, ""), HasSubstr("/output/watch: found no node, expected those to compare"));
+  EXPECT_THAT(refusal(shipped("postit_test2"), "--refine mesh"),
+              HasSubstr("/converge/refine: found \"mesh\""));
   json thrown = ball(0.5);
   thrown["model"]["points"][0]["velocity"] = {1.0};
-  EXPECT_NE(refusal(thrown, "").find("/exact: expected one point at rest in 1D"), std::string::npos);
+  EXPECT_THAT(refusal(thrown, ""), HasSubstr("/exact: expected one point at rest in 1D"));
   json late = shipped("glued_bar");
   late["time"]["end"] = 3.5;
-  EXPECT_NE(refusal(late, "").find("/exact: expected a window longer than R_Y/(2F)"), std::string::npos);
+  EXPECT_THAT(refusal(late, ""), HasSubstr("/exact: expected a window longer than R_Y/(2F)"));
   json alone = shipped("two_bars");
   alone["output"]["watch"] = {"right.left"};
-  EXPECT_NE(refusal(alone, "").find("/exact: expected two bars"), std::string::npos);
+  EXPECT_THAT(refusal(alone, ""), HasSubstr("/exact: expected two bars"));
   json unknown = ball(0.5);
   unknown["exact"]["type"] = "flea_circus";
-  EXPECT_NE(refusal(unknown, "").find("/exact/type"), std::string::npos);
+  EXPECT_THAT(refusal(unknown, ""), HasSubstr("/exact/type"));
   // A number is another point on every mesh.
   const auto numbered = [&](const char* where, const json& nodes) {
     json scene = shipped("two_bars");
     scene.erase("exact");
     scene[json::json_pointer(where)] = nodes;
     const std::string said = refusal(scene, "--refine mesh");
-    EXPECT_NE(said.find("on a refined mesh a number is another node"), std::string::npos) << said;
+    EXPECT_THAT(said, HasSubstr("on a refined mesh a number is another node"));
     return said;
   };
-  EXPECT_NE(numbered("/output/watch", {101, 100}).find("/output/watch/0: found 101"), std::string::npos);
-  EXPECT_NE(numbered("/interfaces/0/against/nodes", {100}).find("/interfaces/0/against/nodes/0: found 100"),
-            std::string::npos);
-  EXPECT_NE(numbered("/interfaces/0/parameters", {{"restitution", {{"per_node", {0.5}}}}})
-                .find("/interfaces/0/parameters/restitution/per_node: found [0.5]"),
-            std::string::npos);
+  EXPECT_THAT(numbered("/output/watch", {101, 100}), HasSubstr("/output/watch/0: found 101"));
+  EXPECT_THAT(numbered("/interfaces/0/against/nodes", {100}),
+              HasSubstr("/interfaces/0/against/nodes/0: found 100"));
+  EXPECT_THAT(numbered("/interfaces/0/parameters", {{"restitution", {{"per_node", {0.5}}}}}),
+              HasSubstr("/interfaces/0/parameters/restitution/per_node: found [0.5]"));
   refusal(ball(0.5), "--levels 1");
   refusal(ball(0.5), "--factor 1");
   refusal(ball(0.5), "--refine space");
   const auto folder = fresh_folder();
   std::ofstream(folder / "file") << "not a folder";
-  const Outcome taken = run_program("converge " + scene_files::named("two_bars.json").string() + " --out " +
-                                    (folder / "file").string());
-  EXPECT_EQ(taken.code, 2);
-  EXPECT_NE(taken.output.find("expected a folder"), std::string::npos) << taken.output;
+  EXPECT_THAT(run_program("converge " + scene_files::named("two_bars.json").string() + " --out " +
+                          (folder / "file").string()),
+              Exits(2, HasSubstr("expected a folder")));
 }
 
 }  // namespace

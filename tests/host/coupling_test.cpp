@@ -1,19 +1,8 @@
 // Contacts that share degrees of freedom: block Gauss-Seidel over the laws ends where every law holds.
 #include "host_runner.hpp"
 
-#include "program_runner.hpp"
-
-#include <nlohmann/json.hpp>
-
-#include <array>
-
 namespace ilaw::host::testing {
 namespace {
-
-Scene shipped(const char* name) {
-  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
-  return read_scene(scene_files::named(name));
-}
 
 // What the sweeps left fulfils each law: Signorini and Coulomb, to rounding of the largest speed. Contact
 // arrives at gap 0, but turns a node that was leaving no faster than it left; friction is Coulomb's unless it
@@ -63,8 +52,7 @@ std::array<std::int64_t, 2> expect_laws(const Scene& scene, Integrator& integrat
 }
 
 TEST(NodeToFacet, EveryContactObeysItsLawAtEveryStep) {
-  Scene scene = shipped("two_blocks.json");
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(shipped("two_blocks"));
   const auto pressed = expect_laws(scene, integrator, {0.5, 0.3});
   EXPECT_GT(pressed[0] + pressed[1], 500);
   EXPECT_GT(integrator.tally().sweeps_max, 3);
@@ -74,8 +62,7 @@ TEST(NodeToFacet, EveryContactObeysItsLawAtEveryStep) {
 
 // The block is stopped by the floor, and then by the ball.
 TEST(BlockImpact, MeetsTheFloorAndTheBall) {
-  Scene scene = shipped("block_impact.json");
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(shipped("block_impact"));
   const auto pressed = expect_laws(scene, integrator, {0.3, 0.3});
   EXPECT_GT(pressed[0], 500);
   EXPECT_GT(pressed[1], 100);
@@ -175,8 +162,8 @@ TEST(Chain, ImpulsesAddUpFromBallToBall) {
 
 // Balls of mass 1 that rest on each other in a column, a little compressed: rounding opens no contact. Where
 // there are more, they are a column of their own beside it.
-nlohmann::json column_scene(int balls, int more = 0) {
-  nlohmann::json points = nlohmann::json::array(), interfaces = nlohmann::json::array();
+json column_scene(int balls, int more = 0) {
+  json points = json::array(), interfaces = json::array();
   for (int k = 0; k < balls + more; ++k) {
     const int place = k < balls ? k : k - balls;
     points.push_back({{"mass", 1.0}, {"position", {place + 0.5}}});
@@ -186,10 +173,10 @@ nlohmann::json column_scene(int balls, int more = 0) {
     else
       interfaces.back()["against"] = {{"nodes", {k - 1}}, {"normal", {1.0}}};
   }
-  const nlohmann::json gravity = {{"type", "gravity"}, {"acceleration", {-10.0}}};
+  const json gravity = {{"type", "gravity"}, {"acceleration", {-10.0}}};
   return {{"model", {{"type", "points"}, {"dimension", 1}, {"points", points}}},
           {"time", {{"dt", 0.001}, {"end", 0.01}}},
-          {"loads", nlohmann::json::array({gravity})},
+          {"loads", json::array({gravity})},
           {"interfaces", interfaces}};
 }
 Scene column(int balls, int more = 0) { return scene_of(column_scene(balls, more).dump()); }
@@ -198,8 +185,7 @@ constexpr int too_long = 2100;  // for Newton's method, too
 // Each contact carries what lies above it. Sweeps alone would take some 2000 for twelve balls.
 TEST(Column, EachContactCarriesWhatLiesAboveIt) {
   for (const int balls : {12, 30}) {
-    Scene scene = column(balls);
-    Integrator integrator = integrator_of(scene);
+    auto [scene, integrator] = simulation_of(column(balls));
     while (integrator.steps() < scene.steps) {
       integrator.step();
       if (integrator.steps() == 1) continue;  // takes the kick of half a step out, too
@@ -218,8 +204,7 @@ TEST(Column, EachContactCarriesWhatLiesAboveIt) {
 
 // A step begins with the forces of the last one: at rest it has hardly anything to find.
 TEST(Column, StaysAtRestWithFewIterations) {
-  Scene scene = column(60);
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(column(60));
   integrator.start();
   integrator.step();
   const std::int64_t first = integrator.tally().sweeps;
@@ -232,8 +217,7 @@ TEST(Column, StaysAtRestWithFewIterations) {
 // Too long for accelerated iterations, but not for Newton's method between them: to what 250 roundings leave.
 TEST(Column, IsSolvedByNewtonStepsWhenLong) {
   constexpr int balls = 250;
-  Scene scene = column(balls);
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(column(balls));
   for (int step = 0; step < 2; ++step) integrator.step();
   EXPECT_GT(integrator.tally().sweeps_max, 100);
   EXPECT_LT(integrator.tally().sweeps_max, 1000);
@@ -247,8 +231,7 @@ TEST(Column, IsSolvedByNewtonStepsWhenLong) {
 // The residual is the last change of an impulse: it bounds by how much impulses differ from those of the
 // laws.
 TEST(Column, WarnsWhenTooLong) {
-  Scene scene = column(too_long);
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(column(too_long));
   integrator.start();
   EXPECT_GE(integrator.tally().sweeps_max, 999);
   EXPECT_EQ(integrator.tally().unconverged, 1);
@@ -266,8 +249,8 @@ TEST(Column, WarnsWhenTooLong) {
   EXPECT_GE(integrator.tally().coupling_residual_max, (1.0 - 1e-3) * largest / size);
   EXPECT_LE(integrator.tally().coupling_residual_max, 3.0 * largest / size);
   ASSERT_EQ(integrator.warnings().size(), 1U);
-  EXPECT_NE(integrator.warnings()[0].find("not solved in 1 of 1 steps, the start included: residual up to"),
-            std::string::npos);
+  EXPECT_THAT(integrator.warnings()[0],
+              HasSubstr("not solved in 1 of 1 steps, the start included: residual up to"));
 }
 
 // A short column beside it is solved. The first 30 iterations have one common direction, so that the residual
@@ -300,28 +283,27 @@ TEST(RunWarnings, TellThatAPenaltyPutsInEnergy) {
   EXPECT_TRUE(dropped(1e4).empty());
   const std::vector<std::string> warnings = dropped(1e8);
   ASSERT_EQ(warnings.size(), 2U);
-  EXPECT_NE(warnings[0].find("a law is stable up to 0.0002"), std::string::npos) << warnings[0];
-  EXPECT_NE(warnings[1].find("interfaces put in the energy"), std::string::npos) << warnings[1];
+  EXPECT_THAT(warnings[0], HasSubstr("a law is stable up to 0.0002"));
+  EXPECT_THAT(warnings[1], HasSubstr("interfaces put in the energy"));
 }
 
 // Bars between two walls. At the critical step itself their fastest vibration grows by as much in every step,
 // without any energy; not where nothing excites it.
 TEST(RunWarnings, TellThatTheFastestVibrationGrows) {
   const auto warnings_at = [](const char* cfl, const char* end, const char* wall) {
-    Scene scene = scene_of(R"({"model": {"type": "bars", "bars": [{"name": "bar", "start": 0.5, "length": 1,
+    auto [scene, integrator] =
+        run_to_end(R"({"model": {"type": "bars", "bars": [{"name": "bar", "start": 0.5, "length": 1,
       "elements": 20, "young": 1, "density": 1, "velocity": -0.1}]}, "time": {"cfl": )" +
-                           std::string(cfl) + R"(, "end": )" + end + R"(}, "interfaces": [
+                   std::string(cfl) + R"(, "end": )" + end + R"(}, "interfaces": [
       {"nodes": "bar.left", "law": "contact", "obstacle": {"type": "plane", "point": [)" +
-                           wall + R"(], "normal": [1]}},
+                   wall + R"(], "normal": [1]}},
       {"nodes": "bar.right", "law": "contact",
        "obstacle": {"type": "plane", "point": [2], "normal": [-1]}}]})");
-    Integrator integrator = integrator_of(scene);
-    while (integrator.steps() < scene.steps) integrator.step();
     return integrator.warnings();
   };
   const std::vector<std::string> warnings = warnings_at("1", "100", "0");
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings[0].find("the fastest vibration of the mesh grows"), std::string::npos) << warnings[0];
+  EXPECT_THAT(warnings[0], HasSubstr("the fastest vibration of the mesh grows"));
   EXPECT_TRUE(warnings_at("0.999", "100", "0").empty());
   EXPECT_TRUE(warnings_at("1", "100", "-100").empty());
 }
@@ -329,16 +311,13 @@ TEST(RunWarnings, TellThatTheFastestVibrationGrows) {
 // On stderr, in the run's line and in the summary.
 TEST(RunWarnings, AreSaidByTheProgram) {
   const auto folder = fresh_folder();
-  nlohmann::json scene = column_scene(too_long);
+  json scene = column_scene(too_long);
   scene["time"]["end"] = 0.001;
-  std::ofstream(folder / "scene.json") << scene.dump();
-  const Outcome outcome =
-      run_program("run " + (folder / "scene.json").string() + " --out " + (folder / "out").string());
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_NE(outcome.output.find("warning: contacts that share nodes are not solved in"), std::string::npos);
-  EXPECT_NE(outcome.output.find(", with warnings; results in"), std::string::npos) << outcome.output;
-  const auto summary = nlohmann::json::parse(text_of(folder / "out" / "summary.json"));
-  EXPECT_NE(summary.at("warnings").dump().find("are not solved in"), std::string::npos);
+  EXPECT_THAT(run_scene(scene, folder),
+              Exits(0, AllOf(HasSubstr("warning: contacts that share nodes are not solved in"),
+                             HasSubstr(", with warnings; results in"))));
+  const auto summary = json_of(folder / "summary.json");
+  EXPECT_THAT(summary.at("warnings").dump(), HasSubstr("are not solved in"));
 }
 
 }  // namespace

@@ -68,8 +68,7 @@ TEST_P(CriticalStep, InterfacesPutNoEnergyIn) {
   const char* given = std::getenv("ILAW_TEST_STEPS");
   const int steps = given ? std::atoi(given) : 20000;
   for (const double cfl : {0.9, 0.98, 0.99, 0.995, 0.999, 1.0}) {
-    Scene scene = scene_of(scene_text(GetParam(), cfl, 20));
-    Integrator integrator = integrator_of(scene);
+    auto [scene, integrator] = simulation_of(scene_of(scene_text(GetParam(), cfl, 20)));
     const EnergyReport first = integrator.energy();
     const double initial = first.kinetic + first.internal;
     // At the critical step itself the bar's fastest mode grows in proportion to time, without energy: what

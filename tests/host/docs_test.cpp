@@ -1,7 +1,6 @@
 // Every scene of the host is derived in docs/theory/shipped_scenes.md; the page of a law names its scene.
+#include "support/matchers.hpp"
 #include "support/scene_files.hpp"
-
-#include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
@@ -10,6 +9,7 @@
 
 namespace {
 
+using namespace ilaw::testing::matchers;
 const std::filesystem::path root = ILAW_SOURCE;
 
 std::string text_of(const std::filesystem::path& file) {
@@ -23,7 +23,7 @@ TEST(ScenesPage, DerivesEverySceneOfTheHost) {
   int scenes = 0;
   for (const std::filesystem::path& file : scene_files::of_host()) {
     ++scenes;
-    EXPECT_NE(text.find("**" + file.stem().string() + "**"), std::string::npos) << file;
+    EXPECT_THAT(text, HasSubstr("**" + file.stem().string() + "**")) << file;
   }
   EXPECT_GT(scenes, 10);
 }
@@ -34,7 +34,7 @@ TEST(LawPages, NameTheScenesOfTheirFolders) {
     ++scenes;
     const std::filesystem::path folder = file.parent_path();
     const std::string text = text_of(folder / (folder.filename().string() + ".md"));
-    EXPECT_NE(text.find(file.filename().string()), std::string::npos) << file;
+    EXPECT_THAT(text, HasSubstr(file.filename().string())) << file;
   }
   EXPECT_GT(scenes, 5);
 }

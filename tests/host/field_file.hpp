@@ -4,9 +4,6 @@
 
 #include "host_runner.hpp"
 
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkNew.h>
@@ -14,13 +11,11 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
-#include <filesystem>
 #include <stdexcept>
-#include <string>
 
 namespace ilaw::host::testing {
 
-inline vtkSmartPointer<vtkUnstructuredGrid> grid_of(const std::filesystem::path& file) {
+inline vtkSmartPointer<vtkUnstructuredGrid> grid_of(const fs::path& file) {
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   EXPECT_TRUE(reader->CanReadFile(file.c_str())) << file;
   reader->SetFileName(file.c_str());
@@ -47,10 +42,6 @@ inline vtkDataArray& cells_of(vtkUnstructuredGrid& grid, const char* name) {
   if (!array) throw std::runtime_error(std::string("no array ") + name);
   EXPECT_EQ(array->GetNumberOfTuples(), grid.GetNumberOfCells());
   return *array;
-}
-
-inline nlohmann::json shipped(const std::string& name) {
-  return read_scene_source(scene_files::named(name + ".json"));
 }
 
 inline std::string block_of(const std::string& material, const std::string& element = "full") {

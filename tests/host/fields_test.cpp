@@ -3,10 +3,8 @@
 
 #include "field_file.hpp"
 #include "host_runner.hpp"
-#include "program_runner.hpp"
 
 #include <Eigen/Geometry>
-#include <nlohmann/json.hpp>
 
 #include <omp.h>
 
@@ -22,8 +20,6 @@
 namespace ilaw::host::testing {
 namespace {
 
-using nlohmann::json;
-
 void expect_vectors(vtkUnstructuredGrid& grid, const char* name, const Dofs& wanted, int d) {
   const Field field(grid, name, 3);
   for (int i = 0; i < static_cast<int>(wanted.size()); ++i)
@@ -37,8 +33,7 @@ TEST(Fields, HoldWhatTheIntegratorHolds) {
   const auto folder = fresh_folder();
   json source = shipped("postit_3d");
   source["model"]["blocks"][0]["elements"] = {20, 2, 2};
-  Scene scene = scene_of(source.dump());
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(source);
   Interface& interface = *scene.interfaces[0];
   Fields fields(scene, folder);
   int bonded = 0, broken = 0, number = 0;
@@ -178,10 +173,9 @@ TEST(Fields, AreListedInASeries) {
   const auto folder = fresh_folder();
   json source = shipped("block_impact");
   source["output"]["fields"] = 40;
-  std::ofstream(folder / "scene.json") << source.dump();
-  ASSERT_EQ(run_program("run " + (folder / "scene.json").string() + " --out " + folder.string()).code, 0);
-  const json series = json::parse(text_of(folder / "fields.vtu.series"));
-  const json summary = json::parse(text_of(folder / "summary.json"));
+  ASSERT_EQ(run_scene(source, folder).code, 0);
+  const json series = json_of(folder / "fields.vtu.series");
+  const json summary = json_of(folder / "summary.json");
   EXPECT_EQ(series["file-series-version"], "1.0");
   // The start, every 40th step, and the last.
   ASSERT_EQ(series["files"].size(), 1U + (summary["steps"].get<std::size_t>() + 39U) / 40U);
@@ -196,10 +190,9 @@ TEST(Fields, AreListedInASeries) {
   }
   source["output"].erase("fields");
   const auto without = fresh_folder();
-  std::ofstream(without / "scene.json") << source.dump();
-  ASSERT_EQ(run_program("run " + (without / "scene.json").string() + " --out " + without.string()).code, 0);
-  for (const auto& entry : std::filesystem::directory_iterator(without))
-    EXPECT_EQ(entry.path().string().find(".vtu"), std::string::npos) << entry.path();
+  ASSERT_EQ(run_scene(source, without).code, 0);
+  for (const auto& entry : fs::directory_iterator(without))
+    EXPECT_THAT(entry.path().string(), Not(HasSubstr(".vtu"))) << entry.path();
 }
 
 // ---- interfaces at the start, obstacles ------------------------------------------------------------------
@@ -231,14 +224,13 @@ TEST(Fields, ShowObstaclesWhereTheyAre) {
     {"law": "contact", "nodes": "b.z_min", "obstacle": {"type": "plane", "point": [0, 0, -1], "normal": [0.6, 0, 0.8], "velocity": [0, 0, -10]}},
     {"law": "contact", "nodes": "b.z_min", "obstacle": {"type": "sphere", "center": [1, 2, 3], "radius": 0.5, "path": [[0, 0, 0, 0], [1, 4, 0, 0]]}},
     {"law": "contact", "nodes": "b.z_min", "obstacle": {"type": "cylinder", "point": [3, 0, 0], "axis": [0, 2, 0], "radius": 0.25}}])");
-  Scene scene = scene_of(source.dump());
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(source);
   Fields fields(scene, folder);
   for (int k = 0; k < 3; ++k) {
     fields.write(integrator);
     integrator.step();
   }
-  const double time = json::parse(text_of(folder / "obstacles.vtu.series"))["files"][2]["time"];
+  const double time = json_of(folder / "obstacles.vtu.series")["files"][2]["time"];
   const auto grid = grid_of(folder / "obstacles_000002.vtu");
   vtkDataArray& owner = cells_of(*grid, "interface");
   std::array<int, 3> seen{};
@@ -269,10 +261,10 @@ TEST(Fields, ShowObstaclesThatStandStillOnce) {
   Fields fields(scene, folder);
   fields.write(integrator);
   fields.write(integrator);
-  EXPECT_EQ(json::parse(text_of(folder / "obstacles.vtu.series"))["files"].size(), 1U);
-  EXPECT_EQ(json::parse(text_of(folder / "fields.vtu.series"))["files"].size(), 2U);
+  EXPECT_EQ(json_of(folder / "obstacles.vtu.series")["files"].size(), 1U);
+  EXPECT_EQ(json_of(folder / "fields.vtu.series")["files"].size(), 2U);
   fields.clear();
-  EXPECT_TRUE(std::filesystem::is_empty(folder));
+  EXPECT_TRUE(fs::is_empty(folder));
 }
 
 // A rubber block thrown too hard for its step: the state in which it diverged, with what was turned inside
@@ -284,12 +276,11 @@ TEST(Diverged, StateIsWrittenAndNamed) {
   source["time"] = {{"cfl", 0.9}, {"end", 0.1}};
   source["interfaces"] = json::parse(R"([{"law": "contact", "nodes": "b.z_min",
     "obstacle": {"type": "plane", "point": [0, 0, 0.1], "normal": [0, 0, 1]}}])");
-  std::ofstream(folder / "scene.json") << source.dump();
-  const std::string run = "run " + (folder / "scene.json").string() + " --out " + folder.string();
+  const std::string run = "run " + written(source, folder) + " --out " + folder.string();
   const Outcome outcome = run_program(run);
   ASSERT_EQ(outcome.code, 1) << outcome.output;
   const auto file = folder / "diverged.vtu";
-  EXPECT_NE(outcome.output.find("; that state is in " + file.string()), std::string::npos) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("; that state is in " + file.string()));
   const std::size_t named = outcome.output.find("; element ");
   ASSERT_NE(named, std::string::npos) << outcome.output;
   const auto grid = grid_of(file);
@@ -299,7 +290,7 @@ TEST(Diverged, StateIsWrittenAndNamed) {
   source["time"]["end"] = 0.001;
   std::ofstream(folder / "scene.json") << source.dump();
   ASSERT_EQ(run_program(run).code, 0);
-  EXPECT_FALSE(std::filesystem::exists(file));
+  EXPECT_FALSE(fs::exists(file));
 }
 
 }  // namespace

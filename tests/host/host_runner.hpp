@@ -1,54 +1,123 @@
-// host_runner.hpp - scenes as text, run in the test's own process.
+// host_runner.hpp - scenes, run in the test's own process or by the program. It brings JSON, files, strings,
+// containers, random numbers and matchers.
 #pragma once
 
+#include "program_runner.hpp"
+#include "support/matchers.hpp"
+#include "support/order.hpp"
+#include "support/random.hpp"
 #include "support/scene_files.hpp"
 
 #include "scene/scene.hpp"
 #include "scene/validation.hpp"
 #include "step/integrator.hpp"
 
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <random>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
 namespace ilaw::host::testing {
 
-inline std::filesystem::path fresh_folder() {
-  static int number = 0;
-  const auto folder = std::filesystem::temp_directory_path() /
-                      ("ilaw_test_" + std::to_string(getpid()) + "_" + std::to_string(number++));
-  std::filesystem::create_directories(folder);
-  return folder;
-}
+using ilaw::testing::order;
+using ilaw::testing::Random;
+
+// Laws come from this build, here and in the programs that a test starts.
+inline const int plugin_folder_is_set = setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+
+inline json shipped(const std::string& name) { return read_scene_source(scene_files::named(name + ".json")); }
 
 inline Scene scene_of(const std::string& text) {
   const auto folder = fresh_folder();
   std::ofstream(folder / "scene.json") << text;
-  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
   Scene scene = read_scene(folder / "scene.json");
-  std::filesystem::remove_all(folder);
+  fs::remove_all(folder);
   return scene;
 }
+inline Scene scene_of(const char* text) { return scene_of(std::string(text)); }
+inline Scene scene_of(const json& source) { return scene_of(source.dump()); }
+inline Scene scene_of(Scene scene) { return scene; }
 
 // What a scene is refused with.
-inline std::string refusal_of_text(const std::string& text) {
+template <class Source>
+std::string refusal_of(const Source& source) {
   try {
-    scene_of(text);
+    scene_of(source);
   } catch (const SceneError& error) {
     return error.what();
   }
   return "not refused";
 }
-inline std::string refusal_of_scene(const nlohmann::json& scene) { return refusal_of_text(scene.dump()); }
+
+// Three steps without a common factor.
+inline constexpr double coprime_steps[] = {1e-2, 3.7e-3, 1.3e-3};
+
+inline json elastic(double young, double poisson, double density) {
+  return {{"type", "linear"}, {"young", young}, {"poisson", poisson}, {"density", density}};
+}
+using Triple = std::array<double, 3>;
+inline json block(const char* name, const Triple& corner, const Triple& size,
+                  const std::array<int, 3>& elements, const json& material) {
+  return {{"name", name}, {"corner", corner}, {"size", size}, {"elements", elements}, {"material", material}};
+}
+// Bodies and interfaces; the time is the test's own.
+inline json scene_of_blocks(const std::vector<json>& blocks, const char* interfaces) {
+  return {{"model", {{"type", "blocks"}, {"blocks", blocks}}}, {"interfaces", json::parse(interfaces)}};
+}
+
+// A point of mass 1 on a floor, under its weight of 10, until 0.2.
+inline json resting_point(const char* law, const json& parameters, double h) {
+  json source = json::parse(R"({
+    "model": {"type": "points", "dimension": 2, "points": [{"mass": 1, "position": [0, 0]}]},
+    "loads": [{"type": "gravity", "name": "weight", "acceleration": [0, -10]}],
+    "interfaces": [{"name": "floor", "nodes": [0], "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}}],
+    "output": {"watch": [0], "forces": ["floor", "weight"], "events": true}})");
+  source["interfaces"][0]["law"] = law;
+  if (!parameters.is_null()) source["interfaces"][0]["parameters"] = parameters;
+  source["time"] = {{"dt", h}, {"end", 0.2}};
+  return source;
+}
 
 inline Integrator integrator_of(Scene& scene) {
   return Integrator(*scene.model, scene.loads, scene.interfaces, scene.dt, scene.prestress);
+}
+
+inline void run_to_end(Integrator& integrator, const Scene& scene) {
+  integrator.start();
+  while (integrator.steps() < scene.steps) integrator.step();
+}
+
+// A scene and what moves it: auto [scene, integrator] = simulation_of(source). Stays where it is made, since
+// the integrator refers to the scene.
+struct Simulation {
+  explicit Simulation(Scene read, bool ends = false)
+      : scene(std::move(read)), integrator(integrator_of(scene)) {
+    if (ends) run_to_end(integrator, scene);
+  }
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  Scene scene;
+  Integrator integrator;
+};
+template <class Source>
+Simulation simulation_of(Source source) {
+  return Simulation(scene_of(std::move(source)));
+}
+template <class Source>
+Simulation run_to_end(Source source) {
+  return Simulation(scene_of(std::move(source)), true);
 }
 
 // Of a number in a scene, all its digits.
@@ -56,20 +125,6 @@ inline std::string number(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.17g", value);
   return text;
-}
-
-// Slope of log(error) over log(h) by least squares.
-inline double order(const std::vector<double>& h, const std::vector<double>& error) {
-  double sx = 0, sy = 0, sxx = 0, sxy = 0;
-  const auto n = static_cast<double>(h.size());
-  for (std::size_t k = 0; k < h.size(); ++k) {
-    const double x = std::log(h[k]), y = std::log(error[k]);
-    sx += x;
-    sy += y;
-    sxx += x * x;
-    sxy += x * y;
-  }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
 }  // namespace ilaw::host::testing

@@ -1,12 +1,8 @@
 // Displacements at the start, against motions that are known.
 #include "host_runner.hpp"
 
-#include <nlohmann/json.hpp>
-
 namespace ilaw::host::testing {
 namespace {
-
-using nlohmann::json;
 
 json block(const char* material, double poisson) {
   json scene = json::parse(R"({"model": {"type": "blocks", "blocks": [{"name": "b", "corner": [1, 2, 3],
@@ -25,8 +21,7 @@ TEST(Initial, DisplacementOfASpringSwingsAsACosine) {
                                     {"nodes": [0], "displacement": [0, 0.1]}], "interfaces": []})");
   for (const double h : {0.07, 0.11, 0.13}) {
     scene["time"]["dt"] = h;
-    Scene read = scene_of(scene.dump());
-    Integrator integrator = integrator_of(read);
+    auto [read, integrator] = simulation_of(scene);
     while (integrator.steps() < read.steps) {
       integrator.step();
       const double n = static_cast<double>(integrator.steps());
@@ -44,8 +39,7 @@ TEST(Initial, RotationLeavesALargeBodyAtRest) {
   const double c = std::cos(0.7), s = std::sin(0.7);
   scene["initial"] = {
       {{"gradient", {{c - 1, -s, 0}, {s, c - 1, 0}, {0, 0, 0}}}, {"displacement", {1, 0, 2}}}};
-  Scene read = scene_of(scene.dump());
-  Integrator integrator = integrator_of(read);
+  auto [read, integrator] = simulation_of(scene);
   const Dofs start = integrator.displacement();
   EXPECT_NEAR(start[0], c * 1.0 - s * 2.0 - 1.0 + 1.0, 1e-15);
   EXPECT_NEAR(start[1], s * 1.0 + c * 2.0 - 2.0, 1e-15);
@@ -57,15 +51,14 @@ TEST(Initial, RotationLeavesALargeBodyAtRest) {
 TEST(Initial, StretchStoresWhatAnElasticBodyDoes) {
   json scene = block("linear", 0.0);
   scene["initial"] = {{{"nodes", "b"}, {"gradient", {{0.01, 0, 0}, {0, 0, 0}, {0, 0, 0}}}}};
-  Scene read = scene_of(scene.dump());
+  Scene read = scene_of(scene);
   EXPECT_NEAR(read.model->potential(read.model->initial_displacement()), 0.5 * 2.0 * 1e-4 * 0.25, 1e-17);
   json bar = json::parse(R"({"model": {"type": "bars", "bars": [{"start": 1, "length": 2, "elements": 7,
       "young": 1, "density": 1}]}, "time": {"cfl": 0.9, "end": 1}, "interfaces": []})");
   json own = bar;
   own["model"]["bars"][0]["initial_displacement"] = {0.1, 0.4};
   bar["initial"] = {{{"gradient", {{0.15}}}, {"displacement", {-0.05}}}};
-  EXPECT_LT((scene_of(bar.dump()).model->initial_displacement() -
-             scene_of(own.dump()).model->initial_displacement())
+  EXPECT_LT((scene_of(bar).model->initial_displacement() - scene_of(own).model->initial_displacement())
                 .cwiseAbs()
                 .maxCoeff(),
             1e-15);
@@ -76,7 +69,7 @@ TEST(Initial, IsRefusedWithPointerFoundAndAllowed) {
     json scene = block("linear", 0.0);
     scene["initial"] = json::parse(initial);
     try {
-      scene_of(scene.dump());
+      scene_of(scene);
     } catch (const SceneError& error) {
       return std::string(error.what());
     }

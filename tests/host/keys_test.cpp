@@ -4,15 +4,10 @@
 
 #include "results/history.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <chrono>
-#include <random>
 
 namespace ilaw::host::testing {
 namespace {
-
-using nlohmann::json;
 
 constexpr double g = 10.0, h = 1e-3;
 
@@ -31,8 +26,7 @@ json point(const json& position, const json& velocity) {
 }
 
 Dofs velocity_after(const json& source, double time) {
-  Scene scene = scene_of(source.dump());
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(source);
   while (integrator.time() < time - 0.5 * h) integrator.step();
   return integrator.velocity();
 }
@@ -64,16 +58,15 @@ TEST(Tangent, IsRefusedWhereItCannotBe) {
   json scene =
       points_on_plane({point({0, 0, 0}, {1, 0, 0})},
                       {{"law", "coulomb"}, {"parameters", {{"friction", 0.1}, {"friction_2", 0.4}}}});
-  EXPECT_NE(refusal_of_scene(scene).find("tangent"), std::string::npos) << refusal_of_scene(scene);
+  EXPECT_THAT(refusal_of(scene), HasSubstr("tangent"));
   scene["interfaces"][0]["tangent"] = {0.0, 0.0, 1.0};
-  EXPECT_EQ(refusal_of_scene(scene),
+  EXPECT_EQ(refusal_of(scene),
             "/interfaces/0/tangent: found [0.0,0.0,1.0], expected a direction across the normal");
   scene["interfaces"][0]["tangent"] = {0.0, 0.0, 0.0};
-  EXPECT_EQ(refusal_of_scene(scene),
-            "/interfaces/0/tangent: found a vector of length 0, expected a direction");
+  EXPECT_EQ(refusal_of(scene), "/interfaces/0/tangent: found a vector of length 0, expected a direction");
   scene["interfaces"][0]["tangent"] = {1.0, 0.0, 0.0};
   scene["interfaces"][0]["obstacle"] = {{"type", "sphere"}, {"center", {0.0, 0.0, -1.0}}, {"radius", 1.0}};
-  EXPECT_EQ(refusal_of_scene(scene),
+  EXPECT_EQ(refusal_of(scene),
             "/interfaces/0/tangent: found a tangent, expected none: the normal of the counterpart turns");
 }
 
@@ -95,8 +88,7 @@ TEST(BirthAndDeath, AreTheFirstStepWithAndTheFirstWithout) {
 TEST(BirthAndDeath, LeaveTheStatusFree) {
   json scene = points_on_plane({point({0, 0, 0}, {0, 0, 0})}, {{"law", "contact"}, {"death", 0.1}});
   scene["output"] = {{"watch", {0}}};
-  Scene run = scene_of(scene.dump());
-  Integrator integrator = integrator_of(run);
+  auto [run, integrator] = simulation_of(scene);
   const auto folder = fresh_folder();
   History history(run, integrator, folder);
   while (integrator.steps() < run.steps) {
@@ -119,8 +111,7 @@ TEST(Watched, NodesAreContactsInTheirOrder) {
       points_on_plane({point({0, 0, 0}, {0, 0, 0}), point({1, 0, 0}, {0, 0, 0}), point({2, 0, 0}, {0, 0, 0})},
                       {{"law", "tie"}});
   scene["output"] = {{"watch", {2, 1}}};
-  Scene run = scene_of(scene.dump());
-  Integrator integrator = integrator_of(run);
+  auto [run, integrator] = simulation_of(scene);
   const auto folder = fresh_folder();
   History history(run, integrator, folder);
   history.add_row(integrator);
@@ -137,8 +128,7 @@ TEST(BirthAndDeath, AgeNoState) {
     "time": {"dt": 0.001, "end": 1}, "loads": [{"type": "force", "nodes": [0], "direction": [1], "history": [[0.3, 0], [0.3001, 2]]}],
     "interfaces": [{"law": "postit", "nodes": "all", "birth": 0.2, "parameters": {"initial_adhesion": 0.2, "memory": 1},
                     "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})");
-  Scene run = scene_of(scene.dump());
-  Integrator integrator = integrator_of(run);
+  auto [run, integrator] = simulation_of(scene);
   while (integrator.velocity()[0] == 0.0) integrator.step();
   EXPECT_NEAR(integrator.time(), 0.3 + 0.2 / 2.0, 1.1e-3);
 }
@@ -150,8 +140,7 @@ TEST(GapOffset, IsTakenOffTheGap) {
   const json scene = points_on_plane(
       {point({0, 0, 0.25 + 0.05}, {0, 0, -1})},
       {{"law", "contact"}, {"gap_offset", 0.25}, {"parameters", {{"activation", "predictive"}}}});
-  Scene run = scene_of(scene.dump());
-  Integrator integrator = integrator_of(run);
+  auto [run, integrator] = simulation_of(scene);
   EXPECT_NEAR(run.interfaces[0]->gap_at(0, integrator.displacement(), 0.0), 0.05, 1e-15);
   while (integrator.steps() < run.steps) integrator.step();
   EXPECT_NEAR(integrator.displacement()[2], -0.05, 1e-15);
@@ -175,21 +164,21 @@ TEST(Table, IsLinearBetweenItsTimesAndConstantOutside) {
 
 // Each point is slowed down by its own friction, mu r_N at every step.
 TEST(PerNode, GivesEachNodeItsOwn) {
-  std::mt19937 engine(40);
-  std::uniform_real_distribution<double> friction(0.05, 0.4), place(-3.0, 3.0), height(0.0, 0.3);
+  Random random(40);
   constexpr int count = 12;
   std::vector<json> points;
   json values = json::array();
   for (int k = 0; k < count; ++k) {
     // Some come down later than others: what waits in between must not mix up whose friction is whose.
-    points.push_back(point({place(engine), place(engine), k % 2 ? height(engine) : 0.0}, {2, 0, 0}));
-    values.push_back(friction(engine));
+    points.push_back(
+        point({random(-3.0, 3.0), random(-3.0, 3.0), k % 2 ? random(0.0, 0.3) : 0.0}, {2, 0, 0}));
+    values.push_back(random(0.05, 0.4));
   }
   values[0] = "inf";
   json scene =
       points_on_plane(points, {{"law", "coulomb"}, {"parameters", {{"friction", {{"per_node", values}}}}}});
   scene["time"]["end"] = 0.4;
-  Scene run = scene_of(scene.dump());
+  Scene run = scene_of(scene);
   Integrator integrator = integrator_of(run);
   std::vector<double> pressed(count), speed(count, 2.0);
   const auto expect_friction = [&] {
@@ -226,7 +215,7 @@ TEST(PerNode, FollowsTheOrderOfTheInterface) {
 // not count.
 TEST(PerNode, IsJudgedNodeByNode) {
   const auto refusal = [](const json& law) {
-    return refusal_of_scene(points_on_plane({point({0, 0, 0}, {0, 0, 0}), point({1, 0, 0}, {0, 0, 0})}, law));
+    return refusal_of(points_on_plane({point({0, 0, 0}, {0, 0, 0}), point({1, 0, 0}, {0, 0, 0})}, law));
   };
   const auto cohesive = [&](const json& toughness) {
     return refusal({{"law", "cohesive"},
@@ -237,7 +226,7 @@ TEST(PerNode, IsJudgedNodeByNode) {
   };
   EXPECT_EQ(cohesive({0.1, 10}), "not refused");
   const std::string conflict = cohesive({10, 0.1});
-  EXPECT_EQ(conflict.find("/interfaces/0/parameters/toughness/per_node/1: law 'cohesive': "), 0U) << conflict;
+  EXPECT_THAT(conflict, StartsWith("/interfaces/0/parameters/toughness/per_node/1: law 'cohesive': "));
   EXPECT_TRUE(conflict.ends_with(" (node 1)")) << conflict;
   EXPECT_EQ(refusal({{"law", "postit"},
                      {"parameters",
@@ -248,7 +237,7 @@ TEST(PerNode, IsJudgedNodeByNode) {
 
 // The place is that in the list, the node that of the model.
 TEST(PerNode, IsRefusedWithThePlaceOfTheValueAndTheNode) {
-  EXPECT_EQ(refusal_of_scene(points_on_plane(
+  EXPECT_EQ(refusal_of(points_on_plane(
                 {point({0, 0, 0}, {0, 0, 0}), point({1, 0, 0}, {0, 0, 0}), point({2, 0, 0}, {0, 0, 0})},
                 {{"law", "coulomb"},
                  {"nodes", {2, 0}},
@@ -273,14 +262,14 @@ TEST(PerNode, TakesNoLongerTogetherThanOneByOne) {
   const json scene =
       points_on_plane(points, {{"law", "coulomb"}, {"parameters", parameters}, {"tangent", {1, 0, 0}}});
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_EQ(refusal_of_scene(scene), "not refused");
+  EXPECT_EQ(refusal_of(scene), "not refused");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
 }
 
 TEST(VaryingParameters, AreRefusedWhereTheyCannotBe) {
   const auto refusal = [](const json& friction) {
-    return refusal_of_scene(points_on_plane({point({0, 0, 0}, {1, 0, 0})},
-                                            {{"law", "coulomb"}, {"parameters", {{"friction", friction}}}}));
+    return refusal_of(points_on_plane({point({0, 0, 0}, {1, 0, 0})},
+                                      {{"law", "coulomb"}, {"parameters", {{"friction", friction}}}}));
   };
   EXPECT_EQ(refusal({{"per_node", {0.1, 0.2}}}),
             "/interfaces/0/parameters/friction/per_node: found 2 values, expected 1, one per node of the "
@@ -289,19 +278,19 @@ TEST(VaryingParameters, AreRefusedWhereTheyCannotBe) {
             "/interfaces/0/parameters/friction/table/0: found [0.0,0.1,0.2], expected [time, value]");
   EXPECT_EQ(refusal({{"table", {{0.0, "much"}}}}),
             "/interfaces/0/parameters/friction/table/0/1: found \"much\", expected a number or \"inf\"");
-  EXPECT_NE(refusal({{"tabel", {{0.0, 1.0}}}}).find("expected a number, \"inf\", a choice, {\"table\""),
-            std::string::npos);
+  EXPECT_THAT(refusal({{"tabel", {{0.0, 1.0}}}}),
+              HasSubstr("expected a number, \"inf\", a choice, {\"table\""));
   for (const json& wrong : {json{{"table", {{0.0, -0.1}}}}, json{{"per_node", {-0.1}}},
                             json{{"table", {{1.0, 0.1}, {0.5, 0.1}}}}, json{{"table", json::array()}}}) {
     const std::string message = refusal(wrong);
-    EXPECT_EQ(message.find("/interfaces/0/parameters"), 0U) << message;
-    EXPECT_NE(message.find("friction"), std::string::npos) << message;
+    EXPECT_THAT(message, StartsWith("/interfaces/0/parameters"));
+    EXPECT_THAT(message, HasSubstr("friction"));
   }
-  EXPECT_NE(refusal({{"per_node", {-0.1}}}).find("'friction' = -0.1"), std::string::npos);
-  const std::string message = refusal_of_scene(points_on_plane(
+  EXPECT_THAT(refusal({{"per_node", {-0.1}}}), HasSubstr("'friction' = -0.1"));
+  const std::string message = refusal_of(points_on_plane(
       {point({0, 0, 0}, {1, 0, 0})},
       {{"law", "coulomb"}, {"parameters", {{"friction", 0.1}, {"activation", {{"table", {{0.0, 1.0}}}}}}}}));
-  EXPECT_NE(message.find("activation"), std::string::npos) << message;
+  EXPECT_THAT(message, HasSubstr("activation"));
 }
 
 }  // namespace

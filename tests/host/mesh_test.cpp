@@ -10,10 +10,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include <cmath>
 #include <numbers>
-#include <random>
-#include <set>
 
 namespace ilaw::host::testing {
 namespace {
@@ -55,10 +52,9 @@ Solids solids_of(const WrittenMesh& mesh, const Kind& kind) { return Solids({}, 
 
 // A box whose inner nodes are moved about.
 WrittenMesh distorted(bool tetrahedra) {
-  std::mt19937_64 random(7);
-  std::uniform_real_distribution<double> moved(-0.08, 0.08);
+  Random random(7);
   return box_mesh({4, 3, 3}, {2.0, 1.2, 0.9}, tetrahedra, [&](const Eigen::Vector3d& x) {
-    const Eigen::Vector3d by(moved(random), moved(random), moved(random));
+    const Eigen::Vector3d by(random(-0.08, 0.08), random(-0.08, 0.08), random(-0.08, 0.08));
     const bool inside = x[0] > 1e-9 && x[0] < 2.0 - 1e-9 && x[1] > 1e-9 && x[1] < 1.2 - 1e-9 && x[2] > 1e-9 &&
                         x[2] < 0.9 - 1e-9;
     return Eigen::Vector3d(inside ? x + by : x);
@@ -387,9 +383,9 @@ TEST(Mesh, HexahedraOfATubeDoNotLock) {
 // a uniform pressure goes through meshes that do not match.
 TEST(Mesh, TrianglesAreASurface) {
   const MeshFile file(box_mesh({3, 3, 1}, {0.1, 0.1, 0.04}, true));
-  Scene scene = scene_of(R"({"model": {"type": "solids",
+  auto [scene, integrator] = simulation_of(R"({"model": {"type": "solids",
       "meshes": [{"name": "m", "file": ")" +
-                         file.path().string() + R"(", "material":
+                                           file.path().string() + R"(", "material":
         {"type": "linear", "young": 1e6, "poisson": 0, "density": 1000}}],
       "blocks": [{"name": "b", "corner": [0, 0, 0.04], "size": [0.1, 0.1, 0.05], "elements": [2, 2, 1], "material":
         {"type": "linear", "young": 1e6, "poisson": 0, "density": 1000}}]},
@@ -400,7 +396,6 @@ TEST(Mesh, TrianglesAreASurface) {
                     "against": {"surface": "m.z_max", "both_sides": true}},
                    {"name": "floor", "law": "contact", "nodes": "m.z_min",
                     "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})");
-  Integrator integrator = integrator_of(scene);
   for (std::int64_t n = 0; n < scene.steps; ++n) integrator.step();
   EXPECT_LT(integrator.energy().balance_error, 1e-12);
   double floor = 0.0;

@@ -6,15 +6,8 @@
 
 #include <Eigen/Core>
 
-#include <array>
-#include <filesystem>
-#include <fstream>
 #include <functional>
-#include <map>
-#include <sstream>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace ilaw::host::testing {
 
@@ -116,14 +109,14 @@ class MeshFile {
     path_ = folder_ / name;
   }
   explicit MeshFile(const WrittenMesh& mesh) : MeshFile(mesh.vtu()) {}
-  ~MeshFile() { std::filesystem::remove_all(folder_); }
+  ~MeshFile() { fs::remove_all(folder_); }
   MeshFile(const MeshFile&) = delete;
   MeshFile& operator=(const MeshFile&) = delete;
 
-  const std::filesystem::path& path() const { return path_; }
+  const fs::path& path() const { return path_; }
 
  private:
-  std::filesystem::path folder_, path_;
+  fs::path folder_, path_;
 };
 
 }  // namespace ilaw::host::testing

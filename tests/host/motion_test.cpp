@@ -37,8 +37,7 @@ double ball_error(double restitution, double h) {
   constexpr int draws = 10;
   for (int draw = 0; draw < draws; ++draw) {
     const double height = 1.0 + 0.04 * std::sqrt(2.0) * draw;
-    Scene scene = scene_of(ball(restitution, h, 2.5, height));
-    Integrator integrator = integrator_of(scene);
+    auto [scene, integrator] = simulation_of(ball(restitution, h, 2.5, height));
     while (integrator.steps() < scene.steps) {
       integrator.step();
       error += std::abs(height + integrator.displacement()[0] -
@@ -66,8 +65,7 @@ TEST(BouncingBall, ConvergesToItsParabolasForEveryRestitution) {
 // After k impacts the speed is e^k times that of the first, but for gravity over the step of the impact.
 TEST(BouncingBall, KeepsTheRestitutionToTheKthImpact) {
   constexpr double h = 1e-4, e = 0.7;
-  Scene scene = scene_of(ball(e, h, 3.0, 1.0));
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(ball(e, h, 3.0, 1.0));
   double before = 0.0;
   int impacts = 0;
   while (impacts < 5) {
@@ -102,10 +100,8 @@ TEST(SlidingBlock, StopsAtItsDistanceAndKeepsItsDirection) {
   for (double h = 7e-3; h > 2e-4; h /= 2.0) {
     double error = 0.0;
     for (const double friction : {0.4, 0.43, 0.47, 0.51}) {
-      Scene scene = scene_of(
+      auto [scene, integrator] = run_to_end(
           block("[0.0, 0.0, 0.0]", "[1.2, 1.6, 0.0]", h, "[0.0, 0.0, -10.0]", "[0.0, 0.0, 1.0]", friction));
-      Integrator integrator = integrator_of(scene);
-      while (integrator.steps() < scene.steps) integrator.step();
       const Dofs& u = integrator.displacement();
       // Rounding of up to 4600 sums below 0.5.
       EXPECT_NEAR(u[0] * 1.6, u[1] * 1.2, 4600 * 0.5 * 2.2e-16) << "h " << h << ", friction " << friction;
@@ -124,9 +120,8 @@ TEST(SlidingBlock, OnAnInclineSticksOrAccelerates) {
   const double angle = 0.5, h = 1e-3;
   const std::string normal = "[" + number(-std::sin(angle)) + ", " + number(std::cos(angle)) + "]";
   for (const double friction : {0.3, 0.54, 0.55, 0.8}) {
-    Scene scene = scene_of(block("[0.0, 0.0]", "[0.0, 0.0]", h, "[0.0, -10.0]", normal, friction));
-    Integrator integrator = integrator_of(scene);
-    while (integrator.steps() < scene.steps) integrator.step();
+    auto [scene, integrator] =
+        run_to_end(block("[0.0, 0.0]", "[0.0, 0.0]", h, "[0.0, -10.0]", normal, friction));
     const double down =
         -(integrator.velocity()[0] * std::cos(angle) + integrator.velocity()[1] * std::sin(angle));
     const bool sticks = std::tan(angle) <= friction;
@@ -139,13 +134,11 @@ TEST(SlidingBlock, OnAnInclineSticksOrAccelerates) {
 // A plane that moves carries a resting point along, also through a path; the point's gap stays closed.
 TEST(MovingPlane, CarriesItsPoint) {
   for (const std::string motion : {R"("velocity": [0.5])", R"("path": [[0.0, 0.0], [2.0, 1.0]])"}) {
-    Scene scene = scene_of(
+    auto [scene, integrator] = run_to_end(
         R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1.0, "position": [0.0]}]},
       "time": {"dt": 1e-3, "end": 1.0}, "loads": [{"type": "gravity", "acceleration": [-10.0]}],
       "interfaces": [{"law": "contact", "nodes": [0], "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0], )" +
         motion + "}}]}");
-    Integrator integrator = integrator_of(scene);
-    while (integrator.steps() < scene.steps) integrator.step();
     EXPECT_NEAR(integrator.displacement()[0], 0.5, 2e-3) << "motion " << motion;
     EXPECT_NEAR(integrator.velocity()[0], 0.5, 1e-12) << "motion " << motion;
     EXPECT_LE(integrator.energy().balance_error, 1e-12) << "motion " << motion;
@@ -154,15 +147,13 @@ TEST(MovingPlane, CarriesItsPoint) {
 
 // Over all nodes and steps, not the last of them.
 TEST(Penetration, IsTheLargestOfAll) {
-  Scene scene = scene_of(
+  auto [scene, integrator] = run_to_end(
       R"({"model": {"type": "points", "dimension": 1,
                     "points": [{"mass": 1, "position": [0.1], "velocity": [-3.1]}, {"mass": 1, "position": [-0.3]},
                                {"mass": 1, "position": [5]}, {"mass": 1, "position": [-0.1]}]},
       "time": {"dt": 0.1, "end": 0.5},
       "interfaces": [{"law": "contact", "nodes": [0, 1, 2, 3], "parameters": {"activation": "moreau"},
                       "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})");
-  Integrator integrator = integrator_of(scene);
-  while (integrator.steps() < scene.steps) integrator.step();
   EXPECT_NEAR(integrator.tally().penetration_max, 0.3, 1e-15);
 }
 
@@ -170,7 +161,7 @@ TEST(Penetration, IsTheLargestOfAll) {
 // - e v^- for the plane's velocity w in the step to come.
 TEST(MovingPlane, CountsWithItsVelocityBeforeAndAfterAKink) {
   for (const double w : {-0.3, 0.4}) {
-    Scene scene = scene_of(
+    auto [scene, integrator] = run_to_end(
         R"({"model": {"type": "points", "dimension": 1,
                       "points": [{"mass": 1.0, "position": [0.2495], "velocity": [-1.0]}]},
       "time": {"dt": 1e-3, "end": 0.3}, "loads": [],
@@ -178,8 +169,6 @@ TEST(MovingPlane, CountsWithItsVelocityBeforeAndAfterAKink) {
                       "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0],
                                    "path": [[0.0, 0.0], [0.25, 0.0], [1.25, )" +
         number(w) + "]]}}]}");
-    Integrator integrator = integrator_of(scene);
-    while (integrator.steps() < scene.steps) integrator.step();
     EXPECT_NEAR(integrator.velocity()[0], w + 0.5, 1e-12) << w;
     EXPECT_LE(integrator.energy().balance_error, 1e-12) << "w " << w;
   }
@@ -188,15 +177,13 @@ TEST(MovingPlane, CountsWithItsVelocityBeforeAndAfterAKink) {
 // A point in the corner of two planes that are not at right angles: each impulse moves it along the other
 // plane, and the sweep over both must leave it at rest.
 TEST(Corner, OfTwoPlanesHoldsAPoint) {
-  Scene scene = scene_of(R"({"model": {"type": "points", "dimension": 2,
+  auto [scene, integrator] = run_to_end(R"({"model": {"type": "points", "dimension": 2,
       "points": [{"mass": 1.0, "position": [0.0, 0.0], "velocity": [-1.0, -2.0]}]},
     "time": {"dt": 1e-3, "end": 0.1}, "loads": [{"type": "gravity", "acceleration": [0.0, -10.0]}],
     "interfaces": [{"law": "coulomb", "name": "floor", "parameters": {"friction": 0.1}, "nodes": [0],
                     "obstacle": {"type": "plane", "point": [0.0, 0.0], "normal": [0.0, 1.0]}},
                    {"law": "coulomb", "name": "wall", "parameters": {"friction": 0.1}, "nodes": [0],
                     "obstacle": {"type": "plane", "point": [0.0, 0.0], "normal": [0.8, -0.6]}}]})");
-  Integrator integrator = integrator_of(scene);
-  while (integrator.steps() < scene.steps) integrator.step();
   EXPECT_LE(integrator.velocity().norm(), 1e-12);
   EXPECT_GT(integrator.tally().sweeps_max, 2);
   EXPECT_LE(integrator.tally().coupling_residual_max, 1e-14);
@@ -207,13 +194,12 @@ TEST(Corner, OfTwoPlanesHoldsAPoint) {
 TEST(Shock, EntersExactlyOneStep) {
   for (const double h : {0.1, 1e-3, 7e-4, 1.0 / 3.0})
     for (int n = 1; n <= 300; n += 7) {
-      Scene scene = scene_of(
+      auto [scene, integrator] = simulation_of(
           R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1.0, "position": [9.0]}]},
         "time": {"dt": )" +
           number(h) + R"(, "end": )" + number(310 * h) +
           R"(}, "loads": [{"type": "shock", "nodes": [0], "time": )" + number(n * h) +
           R"(, "impulse": [1.0]}], "interfaces": []})");
-      Integrator integrator = integrator_of(scene);
       while (integrator.steps() < n - 1) integrator.step();
       EXPECT_EQ(integrator.velocity()[0], 0.0) << "n " << n;
       integrator.step();
@@ -236,11 +222,10 @@ TEST(Shock, AtADecimalInstantEntersTheStepThatEndsThere) {
     for (int n = 1; n <= shocks; ++n)
       loads += std::string(n > 1 ? ", " : "") +
                R"({"type": "shock", "nodes": [0], "impulse": [1.0], "time": )" + decimal(n * dt) + "}";
-    Scene scene = scene_of(
+    auto [scene, integrator] = simulation_of(
         R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1.0, "position": [9.0]}]},
         "time": {"dt": )" +
         decimal(dt) + R"(, "end": 10.0}, "loads": [)" + loads + R"(], "interfaces": []})");
-    Integrator integrator = integrator_of(scene);
     for (int n = 1; n <= shocks; ++n) {
       integrator.step();
       ASSERT_EQ(integrator.velocity()[0], n) << "dt = " << decimal(dt) << ", step " << n;
@@ -250,8 +235,7 @@ TEST(Shock, AtADecimalInstantEntersTheStepThatEndsThere) {
 
 // V_{1/2} = V_0 + (h/2) g: positions of a free fall are exact at all steps.
 TEST(Start, TakesHalfAStepOfForce) {
-  Scene scene = scene_of(ball(0.0, 1e-3, 0.3, 1.0));
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(ball(0.0, 1e-3, 0.3, 1.0));
   EXPECT_EQ(integrator.velocity()[0], -0.5 * 1e-3 * 10.0);
   while (integrator.steps() < scene.steps) integrator.step();
   EXPECT_NEAR(integrator.displacement()[0], -0.5 * 10.0 * 0.3 * 0.3, 1e-13);

@@ -5,18 +5,13 @@
 #include "host_runner.hpp"
 #include "model/points.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <memory>
 #include <numeric>
-#include <random>
-#include <vector>
 
 namespace ilaw::host::testing {
 namespace {
 
 using Eigen::Vector3d;
-using nlohmann::json;
 
 Motion still() { return Motion(Vector(Vector3d::Zero())); }
 
@@ -132,21 +127,11 @@ TEST(MovingObstacle, IsTheOneAtRestDisplaced) {
 // A sphere that moves at 2 hits a resting point at distance 1.5 from its surface, after 0.75: e = 1 throws it
 // off at twice the speed, along the line of centres.
 TEST(MovingSphere, ThrowsAPointOff) {
-  Scene scene = scene_of(json{
-      {"model",
-       {{"type", "points"}, {"dimension", 3}, {"points", {{{"mass", 2.0}, {"position", {0.0, 0.0, 0.0}}}}}}},
-      {"time", {{"dt", 1e-3}, {"end", 1.5}}},
-      {"interfaces",
-       {{{"law", "contact"},
-         {"parameters", {{"restitution", 1.0}}},
-         {"nodes", {0}},
-         {"obstacle",
-          {{"type", "sphere"},
-           {"center", {-1.5, -2.0, 0.0}},
-           {"radius", 1.0},
-           {"velocity", {1.2, 1.6, 0.0}}}}}}}}
-                             .dump());
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(R"({
+    "model": {"type": "points", "dimension": 3, "points": [{"mass": 2, "position": [0, 0, 0]}]},
+    "time": {"dt": 1e-3, "end": 1.5},
+    "interfaces": [{"law": "contact", "parameters": {"restitution": 1}, "nodes": [0],
+      "obstacle": {"type": "sphere", "center": [-1.5, -2, 0], "radius": 1, "velocity": [1.2, 1.6, 0]}}]})");
   while (integrator.steps() < scene.steps) {
     integrator.step();
     if (integrator.time() < 0.75 - scene.dt) {
@@ -164,23 +149,13 @@ TEST(MovingSphere, ThrowsAPointOff) {
 
 // Positions follow a path at all steps, corners included, on the axes that are driven; the others are free.
 TEST(PrescribedMotion, IsFollowedToRounding) {
-  Scene scene = scene_of(json{
-      {"model",
-       {{"type", "points"},
-        {"dimension", 2},
-        {"points", {{{"mass", 2.0}, {"position", {0.0, 0.0}}, {"velocity", {0.0, 3.0}}}}}}},
-      {"time", {{"dt", 1e-3}, {"end", 3.0}}},
-      {"loads",
-       {{{"type", "gravity"}, {"acceleration", {5.0, -10.0}}},
-        {{"type", "motion"},
-         {"nodes", {0}},
-         {"axes", {0}},
-         {"path", {{0.0, 0.0, 0.0}, {1.0, 0.5, 0.0}, {1.5, -1.0, 0.0}, {2.5, -1.0, 0.0}}}}}},
-      {"interfaces",
-       json::array()}}.dump());
+  auto [scene, integrator] = simulation_of(R"({
+    "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [0, 0], "velocity": [0, 3]}]},
+    "time": {"dt": 1e-3, "end": 3}, "interfaces": [],
+    "loads": [{"type": "gravity", "acceleration": [5, -10]},
+      {"type": "motion", "nodes": [0], "axes": [0], "path": [[0, 0, 0], [1, 0.5, 0], [1.5, -1, 0], [2.5, -1, 0]]}]})");
   const Table path({0.0, 1.0, 1.5, 2.5}, {Vector::Constant(1, 0.0), Vector::Constant(1, 0.5),
                                           Vector::Constant(1, -1.0), Vector::Constant(1, -1.0)});
-  Integrator integrator = integrator_of(scene);
   while (integrator.steps() < scene.steps) {
     integrator.step();
     const double t = integrator.time();
@@ -194,16 +169,10 @@ TEST(PrescribedMotion, IsFollowedToRounding) {
 // A bar that is pulled at one end at a constant speed v and held at the other: after n passes of the wave the
 // energy given to it is what it holds. In the first, until L/c, the end feels the force Z v: work Z v^2 t.
 TEST(PrescribedMotion, DoesTheWorkOfItsForce) {
-  Scene scene = scene_of(json{
-      {"model",
-       {{"type", "bars"},
-        {"bars", {{{"name", "bar"}, {"length", 1.0}, {"elements", 100}, {"young", 4.0}, {"density", 1.0}}}}}},
-      {"time", {{"cfl", 1.0}, {"end", 0.45}}},
-      {"loads", {{{"type", "motion"}, {"nodes", "bar.right"}, {"velocity", {0.3}}}}},
-      {"interfaces",
-       json::array()}}.dump());
-  Integrator integrator = integrator_of(scene);
-  while (integrator.steps() < scene.steps) integrator.step();
+  auto [scene, integrator] = run_to_end(R"({
+    "model": {"type": "bars", "bars": [{"name": "bar", "length": 1, "elements": 100, "young": 4, "density": 1}]},
+    "time": {"cfl": 1, "end": 0.45}, "interfaces": [],
+    "loads": [{"type": "motion", "nodes": "bar.right", "velocity": [0.3]}]})");
   // The end moves at once: its first impulse is given to a half mass before the balance starts.
   EXPECT_NEAR(integrator.energy().external_work, 2.0 * 0.3 * 0.3 * 0.45, 1e-12);
   EXPECT_LE(integrator.energy().balance_error, 1e-14);
@@ -215,19 +184,13 @@ TEST(PrescribedMotion, DoesTheWorkOfItsForce) {
 // scheme of second order, and the energy that is lost is its work.
 TEST(Damping, DecaysExponentiallyToSecondOrder) {
   constexpr double rate = 2.0, end = 1.0;
+  json source = json::parse(R"({
+    "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [0, 0], "velocity": [3, -4]}]},
+    "loads": [{"type": "damping", "rate": 2}], "interfaces": []})");
   std::vector<double> steps, v_errors, u_errors;
   for (const double dt : {0.02, 0.01, 0.005, 0.0025}) {
-    Scene scene = scene_of(json{
-        {"model",
-         {{"type", "points"},
-          {"dimension", 2},
-          {"points", {{{"mass", 2.0}, {"position", {0.0, 0.0}}, {"velocity", {3.0, -4.0}}}}}}},
-        {"time", {{"dt", dt}, {"end", end}}},
-        {"loads", {{{"type", "damping"}, {"rate", rate}}}},
-        {"interfaces",
-         json::array()}}.dump());
-    Integrator integrator = integrator_of(scene);
-    while (integrator.steps() < scene.steps) integrator.step();
+    source["time"] = {{"dt", dt}, {"end", end}};
+    auto [scene, integrator] = run_to_end(source);
     const Eigen::Vector2d start(3.0, -4.0);
     const double t = integrator.time();
     steps.push_back(dt);

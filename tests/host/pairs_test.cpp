@@ -1,14 +1,8 @@
 // Parameters by the two materials that meet: a table of the scene against the same values written out.
 #include "host_runner.hpp"
 
-#include <nlohmann/json.hpp>
-
-#include <cmath>
-
 namespace ilaw::host::testing {
 namespace {
-
-using nlohmann::json;
 
 // Four masses that slide on a plane, of rubber (0, 2) and steel (1, 3).
 json sliders(double dt = 1e-3) {
@@ -27,9 +21,7 @@ json sliders(double dt = 1e-3) {
 }
 
 Dofs end_of(const json& source) {
-  Scene scene = scene_of(source.dump());
-  Integrator integrator = integrator_of(scene);
-  while (integrator.steps() < scene.steps) integrator.step();
+  auto [scene, integrator] = run_to_end(source);
   return integrator.displacement();
 }
 
@@ -68,7 +60,7 @@ TEST(Pairs, HoldInBothOrdersUnlessTheOtherHasItsOwnRow) {
 TEST(Pairs, OfOneKindAreANumber) {
   json scene = sliders();
   scene["interfaces"][0]["nodes"] = "steel";
-  const Arguments arguments = scene_of(scene.dump()).interfaces[0]->setup().arguments;
+  const Arguments arguments = scene_of(scene).interfaces[0]->setup().arguments;
   EXPECT_TRUE(arguments.per_node.empty());
   EXPECT_EQ(arguments.numbers.at("friction"), 0.2);
 }
@@ -102,7 +94,7 @@ TEST(Pairs, AreRefusedWithPointerFoundAndAllowed) {
   const auto with = [](const char* pointer, const char* value) {
     json scene = sliders();
     scene[json::json_pointer(pointer)] = json::parse(value);
-    return refusal_of_scene(scene);
+    return refusal_of(scene);
   };
   EXPECT_EQ(with("/interfaces/0/pairs", R"("wett")"),
             "/interfaces/0/pairs: found \"wett\", expected one of wet (did you mean 'wet'?)");
@@ -126,12 +118,12 @@ TEST(Pairs, AreRefusedWithPointerFoundAndAllowed) {
       with("/interfaces/0/parameters", R"({"friction": 0.1})"),
       "/interfaces/0/parameters/friction: found 'friction' here and in the table of 'pairs', expected one "
       "of them");
-  EXPECT_NE(with("/pairs/wet/0/parameters/friction", "-1").find("/interfaces/0/pairs: "), std::string::npos);
+  EXPECT_THAT(with("/pairs/wet/0/parameters/friction", "-1"), HasSubstr("/interfaces/0/pairs: "));
   json nameless = sliders();
   nameless["interfaces"][0]["obstacle"].erase("name");
   nameless["pairs"]["wet"] =
       json::parse(R"([{"sides": ["rubber", "steel"], "parameters": {"friction": 0.1}}])");
-  EXPECT_EQ(refusal_of_scene(nameless),
+  EXPECT_EQ(refusal_of(nameless),
             "/interfaces/0/obstacle: key 'name' is missing, the side of the obstacle in 'pairs'");
   json mixed = blocks();
   mixed["sets"] = json::parse(R"({"one": {"box": [[0, 0, 0], [1.1, 1, 0.21]], "of": "table"},
@@ -139,7 +131,7 @@ TEST(Pairs, AreRefusedWithPointerFoundAndAllowed) {
   mixed["pairs"]["dry"][0]["sides"] = {"left", "one"};
   mixed["pairs"]["dry"][1]["sides"] = {"right", "two"};
   EXPECT_EQ(
-      refusal_of_scene(mixed),
+      refusal_of(mixed),
       "/interfaces/0/against/surface: found a surface of 'one' and 'two', expected an interface for each of "
       "them");
 }

@@ -1,14 +1,8 @@
 // The force that peels a tape, which is a string of points, against its closed form.
 #include "run_result.hpp"
 
-#include <nlohmann/json.hpp>
-
-#include <cmath>
-
 namespace ilaw::host::testing {
 namespace {
-
-using nlohmann::json;
 
 constexpr double toughness = 6.0, width = 0.01, edge = 1e-3, stiffness = 10.0;  // the last: E A, in N
 constexpr double line_mass = 0.04, air = 10.0, speed = 0.02;
@@ -45,12 +39,12 @@ json peeled(double angle) {
 TEST(PeelForce, IsToughnessTimesWidthOverOneLessTheCosine) {
   const std::vector<std::pair<double, double>> angles_and_steps = {{60, 6e-5}, {90, 4.7e-5}, {120, 3.1e-5}};
   for (const auto& [degrees, h] : angles_and_steps) {
+    GIVEN(degrees, h);
     const double angle = degrees * M_PI / 180.0;
     json scene = peeled(angle);
     scene["time"] = {{"dt", h}, {"end", 8.0 * edge / speed}};
     const Ran run = ran(scene);
-    const std::vector<double>&time = run.history.at("time"), &along = run.history.at("grip.F0"),
-          &up = run.history.at("grip.F1");
+    const std::vector<double>&time = run["time"], &along = run["grip.F0"], &up = run["grip.F1"];
     double released = 0.0;
     int rows = 0;
     for (std::size_t k = 0; k < time.size(); ++k) {
@@ -62,12 +56,10 @@ TEST(PeelForce, IsToughnessTimesWidthOverOneLessTheCosine) {
     released /= rows;
     const double length = (free_edges + 6.0) * edge;
     const double drag = air * line_mass * length * speed * 2.0 * (1.0 - std::cos(angle));
-    EXPECT_NEAR(released, toughness * width + drag, 0.01 * toughness * width)
-        << degrees << " degrees, h " << h;
+    EXPECT_NEAR(released, toughness * width + drag, 0.01 * toughness * width);
     // The grip holds what the glue holds, but for the tape's inertia and the air.
     EXPECT_NEAR(run.mean_after(4.0 * edge / speed, "grip.F1"), -run.mean_after(4.0 * edge / speed, "glue.F1"),
-                0.02 * toughness * width)
-        << degrees << " degrees, h " << h;
+                0.02 * toughness * width);
   }
 }
 

@@ -6,31 +6,21 @@
 namespace ilaw::host::testing {
 namespace {
 
-using nlohmann::json;
-
 constexpr double young = 1e6, density = 1000.0, gravity = 10.0, height = 0.5, side = 0.1;
 constexpr double weight = density * gravity * height * side * side;
 
 // A column on a floor, under its weight.
 json column(double cfl) {
-  return {
-      {"model",
-       {{"type", "blocks"},
-        {"blocks",
-         {{{"name", "b"},
-           {"size", {side, side, height}},
-           {"elements", {1, 1, 6}},
-           {"material", {{"type", "linear"}, {"young", young}, {"poisson", 0}, {"density", density}}}}}}}},
-      {"prestress", {{"tolerance", 1e-8}}},
-      {"time", {{"cfl", cfl}, {"end", 0.2}}},
-      {"loads", {{{"type", "gravity"}, {"acceleration", {0, 0, -gravity}}}}},
-      {"interfaces",
-       {{{"name", "floor"},
-         {"law", "coulomb"},
-         {"parameters", {{"friction", 0.3}}},
-         {"nodes", "b.z_min"},
-         {"obstacle", {{"type", "plane"}, {"point", {0, 0, 0}}, {"normal", {0, 0, 1}}}}}}},
-      {"output", {{"watch", {{{"near", {0, 0, height}}}}}, {"forces", {"floor"}}, {"balance", true}}}};
+  json source = scene_of_blocks(
+      {block("b", {0, 0, 0}, {side, side, height}, {1, 1, 6}, elastic(young, 0, density))},
+      R"([{"name": "floor", "law": "coulomb", "parameters": {"friction": 0.3}, "nodes": "b.z_min",
+           "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}])");
+  source["prestress"] = {{"tolerance", 1e-8}};
+  source["time"] = {{"cfl", cfl}, {"end", 0.2}};
+  source["loads"] = json::parse(R"([{"type": "gravity", "acceleration": [0, 0, -10]}])");
+  source["output"] =
+      json::parse(R"({"watch": [{"near": [0, 0, 0.5]}], "forces": ["floor"], "balance": true})");
+  return source;
 }
 
 double sum_of(const Dofs& impulse, int axis) {
@@ -76,12 +66,12 @@ TEST(Prestress, BalanceBeginsAtTheEquilibrium) {
                              {"direction", {0, 0, -1}},
                              {"history", {{0.01, 0}, {0.011, 30}}}});
   const Ran run = ran(source);
-  EXPECT_EQ(run.history.at("time").front() > 0.0, true);
-  EXPECT_LT(run.summary["energy"]["balance_error"].get<double>(), 1e-12);
-  EXPECT_GT(run.summary["energy"]["kinetic"].get<double>(), 1e-6);
-  EXPECT_LT(run.history.at("balance.external_work")[2], 1e-9);
+  EXPECT_EQ(run["time"].front() > 0.0, true);
+  EXPECT_LT(run.energy("balance_error"), 1e-12);
+  EXPECT_GT(run.energy("kinetic"), 1e-6);
+  EXPECT_LT(run["balance.external_work"][2], 1e-9);
   EXPECT_GT(run.last("balance.external_work"), 1e-4);
-  EXPECT_LE(run.summary["energy"]["reaction_work"].get<double>(), 1e-9);
+  EXPECT_LE(run.energy("reaction_work"), 1e-9);
   EXPECT_GT(run.summary["prestress"]["steps"].get<int>(), 10);
 }
 
@@ -94,8 +84,8 @@ TEST(Prestress, StoredEnergyOfInterfacesIsNotPutIn) {
   const Ran run = ran(source);
   EXPECT_EQ(run.summary["warnings"], json::array());
   // Four springs of the corners share the weight.
-  EXPECT_NEAR(run.summary["energy"]["stored"].get<double>(), weight * weight / (2.0 * 4.0 * stiffness), 1e-5);
-  EXPECT_LT(std::abs(run.summary["energy"]["reaction_work"].get<double>()), 1e-6);
+  EXPECT_NEAR(run.energy("stored"), weight * weight / (2.0 * 4.0 * stiffness), 1e-5);
+  EXPECT_LT(std::abs(run.energy("reaction_work")), 1e-6);
 }
 
 // A ramp takes obstacles and motions through the times before 0.
@@ -112,8 +102,7 @@ TEST(Prestress, RampMovesWhatMoves) {
          {{{"type", "motion"}, {"nodes", "b.left"}},
           {{"type", "motion"}, {"nodes", "b.right"}, {"path", {{-0.5, 0}, {0, stretch}}}}}},
         {"interfaces", json::array()}};
-    Scene scene = scene_of(source.dump());
-    Integrator integrator = integrator_of(scene);
+    auto [scene, integrator] = simulation_of(source);
     integrator.start();
     for (int node = 0; node <= 10; ++node)
       EXPECT_NEAR(integrator.displacement()[node], stretch * node / 10, 1e-8 * stretch) << dt;
@@ -130,8 +119,7 @@ TEST(Prestress, UnloadedBodyRelaxes) {
   source["interfaces"] = json::array();
   source["output"] = json::object();
   source["initial"] = {{{"gradient", {{0.01, 0, 0}, {0, -0.02, 0}, {0, 0, 0.03}}}}};
-  Scene scene = scene_of(source.dump());
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(source);
   integrator.start();
   EXPECT_LT(scene.model->potential(integrator.displacement()), 1e-12);
 }
@@ -140,26 +128,18 @@ TEST(Prestress, BodiesKeepTheirVelocities) {
   json source = column(0.9);
   source["model"]["blocks"][0]["velocity"] = {0.7, 0, 0};
   source["interfaces"][0]["parameters"]["friction"] = 0.0;
-  Scene scene = scene_of(source.dump());
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(source);
   integrator.start();
   EXPECT_NEAR(integrator.velocity()[0], 0.7, 1e-9);
   EXPECT_NEAR(integrator.displacement()[0], 0.0, 1e-12);
 }
 
 TEST(Prestress, EndsTheRunWhereItIsNotFound) {
-  const auto folder = fresh_folder();
   json source = column(0.9);
   source["prestress"] = {{"steps", 20}};
-  std::ofstream(folder / "scene.json") << source.dump();
-  const std::string run = "run " + (folder / "scene.json").string() + " --out " + (folder / "out").string();
-  const Outcome outcome = run_program(run);
-  EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.output.find("no static equilibrium after 21 steps of 'prestress': residual 0."),
-            std::string::npos)
-      << outcome.output;
-  EXPECT_NE(outcome.output.find(", expected at most 1e-06"), std::string::npos) << outcome.output;
-  std::filesystem::remove_all(folder);
+  EXPECT_THAT(run_scene(source),
+              Exits(1, AllOf(HasSubstr("no static equilibrium after 21 steps of 'prestress': residual 0."),
+                             HasSubstr(", expected at most 1e-06"))));
 }
 
 TEST(Prestress, ResumesToTheSameBytes) {
@@ -167,9 +147,8 @@ TEST(Prestress, ResumesToTheSameBytes) {
   json source = column(0.9);
   const auto run = [&](const std::string& out, double end, const std::string& options) {
     source["time"]["end"] = end;
-    std::ofstream(folder / "scene.json") << source.dump();
-    const Outcome outcome = run_program("run " + (folder / "scene.json").string() + " --out " +
-                                        (folder / out).string() + " " + options);
+    const Outcome outcome =
+        run_program("run " + written(source, folder) + " --out " + (folder / out).string() + " " + options);
     EXPECT_EQ(outcome.code, 0) << outcome.output;
     return text_of(folder / out / "history.csv");
   };
@@ -177,12 +156,10 @@ TEST(Prestress, ResumesToTheSameBytes) {
   run("parts", 0.07, "--checkpoint-every 10");
   EXPECT_EQ(run("parts", 0.2, "--checkpoint-every 10 --resume"), whole);
   source["prestress"]["tolerance"] = 1e-3;
-  std::ofstream(folder / "scene.json") << source.dump();
-  EXPECT_EQ(run_program("run " + (folder / "scene.json").string() + " --out " + (folder / "parts").string() +
-                        " --resume")
-                .code,
-            2);
-  std::filesystem::remove_all(folder);
+  EXPECT_EQ(
+      run_program("run " + written(source, folder) + " --out " + (folder / "parts").string() + " --resume")
+          .code,
+      2);
 }
 
 // The shipped seal is squeezed before the run: its lid presses with A E e/(1 - nu^2) from the start, and with
@@ -190,12 +167,12 @@ TEST(Prestress, ResumesToTheSameBytes) {
 TEST(Prestress, SealPressesFromTheStart) {
   const double nu = 0.45, squeezed = 1e-4 * 5e6 * 0.1 / (1.0 - nu * nu), pushed = 0.9 * 2e6 * 1e-4;
   for (const double cfl : {0.7, 0.53, 0.41}) {
-    json source = read_scene_source(scene_files::named("prestressed_seal.json"));
+    json source = shipped("prestressed_seal");
     source["time"]["cfl"] = cfl;
     source["output"]["every"] = 1;
     const Ran run = ran(source);
-    EXPECT_NEAR(run.history.at("lid.F2").front(), -squeezed, 1e-4 * squeezed) << cfl;
-    EXPECT_NEAR(run.history.at("n23.u2").front(), -0.001, 1e-12) << cfl;
+    EXPECT_NEAR(run["lid.F2"].front(), -squeezed, 1e-4 * squeezed) << cfl;
+    EXPECT_NEAR(run["n23.u2"].front(), -0.001, 1e-12) << cfl;
     EXPECT_NEAR(run.mean_after(0.01, "lid.F2"), -squeezed - nu / (1.0 - nu) * pushed, 1e-3 * squeezed) << cfl;
     EXPECT_EQ(run.summary["warnings"], json::array());
   }

@@ -1,41 +1,59 @@
-// program_runner.hpp - the `ilaw` program in a process of its own.
+// program_runner.hpp - the `ilaw` program in a process of its own, and folders for it.
 #pragma once
 
-#include <sys/wait.h>
+#include "support/program.hpp"
+
+#include <nlohmann/json.hpp>
+
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
 namespace ilaw::host::testing {
 
-struct Outcome {
-  int code;
-  std::string output;  // stdout and stderr
-};
+namespace fs = std::filesystem;
+using namespace ilaw::testing::programs;
+using nlohmann::json;
 
 // before: for the shell, as "ulimit -f 100; ".
-inline Outcome run_command(const std::string& command) {
-  FILE* pipe = popen((command + " 2>&1 </dev/null").c_str(), "r");
-  std::string output;
-  std::array<char, 4096> buffer{};
-  for (std::size_t got; (got = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-    output.append(buffer.data(), got);
-  const int status = pclose(pipe);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
-}
-
 inline Outcome run_program(const std::string& arguments, const std::string& before = "") {
   return run_command(before + ILAW_PROGRAM + " " + arguments);
 }
 
+inline json json_of(const fs::path& file) { return json::parse(text_of(file)); }
+
+// An empty folder, removed when the program ends.
+inline fs::path fresh_folder() {
+  struct Folders : std::vector<fs::path> {
+    ~Folders() {
+      std::error_code ignored;
+      for (const fs::path& folder : *this) fs::remove_all(folder, ignored);
+    }
+  };
+  static Folders folders;
+  const std::string name = "ilaw_test_" + std::to_string(getpid()) + "_" + std::to_string(folders.size());
+  folders.push_back(fs::temp_directory_path() / name);
+  fs::create_directories(folders.back());
+  return folders.back();
+}
+
+// The scene in a file of the folder.
+inline std::string written(const json& scene, const fs::path& folder) {
+  std::ofstream(folder / "scene.json") << scene.dump();
+  return folder / "scene.json";
+}
+
+// `ilaw run` on a scene: the scene and its results in a folder.
+inline Outcome run_scene(const json& scene, const fs::path& folder = fresh_folder(),
+                         const std::string& options = "", const std::string& before = "") {
+  return run_program("run " + written(scene, folder) + " --out " + folder.string() + " " + options, before);
+}
+
 // Starts the program, its messages in a file; waitpid tells how it ended.
-inline pid_t start_program(std::vector<std::string> arguments, const std::filesystem::path& messages) {
+inline pid_t start_program(std::vector<std::string> arguments, const fs::path& messages) {
   const pid_t child = fork();
   if (child != 0) return child;
   arguments.insert(arguments.begin(), ILAW_PROGRAM);
@@ -45,12 +63,6 @@ inline pid_t start_program(std::vector<std::string> arguments, const std::filesy
   if (!freopen(messages.c_str(), "w", stderr) || !freopen("/dev/null", "w", stdout)) _exit(127);
   execv(ILAW_PROGRAM, pointers.data());
   _exit(127);
-}
-
-inline std::string text_of(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
 }
 
 }  // namespace ilaw::host::testing

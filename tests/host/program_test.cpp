@@ -1,15 +1,10 @@
 // The `ilaw` program as a user sees it: exit codes, messages, files.
 #include "host_runner.hpp"
-#include "program_runner.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <pty.h>
 
 #include <csignal>
 #include <regex>
-#include <set>
-#include <sstream>
 #include <thread>
 
 namespace ilaw::host::testing {
@@ -28,7 +23,7 @@ TEST(Program, RunsASceneAndLeavesHistoryAndSummary) {
   int rows = 0;
   while (std::getline(history, row)) ++rows;
   EXPECT_EQ(rows, 2500);
-  const nlohmann::json summary = nlohmann::json::parse(text_of(folder / "summary.json"));
+  const json summary = json_of(folder / "summary.json");
   EXPECT_EQ(summary["steps"], 2500);
   EXPECT_EQ(summary["dt"], 1e-3);
   for (const char* key : {"kinetic", "internal", "external_work", "interface_work", "balance_error"})
@@ -38,7 +33,7 @@ TEST(Program, RunsASceneAndLeavesHistoryAndSummary) {
   EXPECT_GE(summary["penetration_max"], 0.0);
   EXPECT_EQ(summary["status_counts"]["closed"].get<int>() + summary["status_counts"]["free"].get<int>(),
             7500);
-  EXPECT_FALSE(std::filesystem::exists(folder / "history.csv.partial"));
+  EXPECT_FALSE(fs::exists(folder / "history.csv.partial"));
 }
 
 TEST(Program, TellsBadInputFromFailureByItsExitCode) {
@@ -46,31 +41,25 @@ TEST(Program, TellsBadInputFromFailureByItsExitCode) {
   EXPECT_EQ(run_program("").code, 2);
   EXPECT_EQ(run_program("walk").code, 2);
   EXPECT_EQ(run_program("run " + ball).code, 2);
-  const Outcome missing = run_program("run nowhere.json --out " + (folder / "a").string());
-  EXPECT_EQ(missing.code, 2);
-  EXPECT_EQ(missing.output, "ilaw: nowhere.json: no such file, expected a scene\n");
-  EXPECT_FALSE(std::filesystem::exists(folder / "a"));
-  EXPECT_NE(run_program("run " + ball + " --out " + ball).output.find("expected a folder (Not a directory)"),
-            std::string::npos);
+  EXPECT_THAT(run_program("run nowhere.json --out " + (folder / "a").string()),
+              Exits(2, "ilaw: nowhere.json: no such file, expected a scene\n"));
+  EXPECT_FALSE(fs::exists(folder / "a"));
+  EXPECT_THAT(run_program("run " + ball + " --out " + ball).output,
+              HasSubstr("expected a folder (Not a directory)"));
   for (const char* command : {"run ", "converge "}) {  // a folder in which nobody can make a file
-    const Outcome unwritable = run_program(command + ball + " --out /proc");
-    EXPECT_EQ(unwritable.code, 2);
-    EXPECT_EQ(unwritable.output.find("ilaw: --out /proc: "), 0U) << unwritable.output;
+    EXPECT_THAT(run_program(command + ball + " --out /proc"), Exits(2, StartsWith("ilaw: --out /proc: ")));
   }
   EXPECT_EQ(run_program("describe no_such_law").code, 2);
-  const Outcome empty = run_program("plot " + folder.string());
-  EXPECT_EQ(empty.code, 2);
-  EXPECT_EQ(empty.output, "ilaw: " + (folder / "history.csv").string() +
-                              ": found no such file, expected the history of watched nodes that `ilaw run "
-                              "SCENE --out " +
-                              folder.string() + "` writes\n");
+  EXPECT_THAT(run_program("plot " + folder.string()),
+              Exits(2, "ilaw: " + (folder / "history.csv").string() +
+                           ": found no such file, expected the history of watched nodes that `ilaw run "
+                           "SCENE --out " +
+                           folder.string() + "` writes\n"));
   EXPECT_EQ(run_program("plot " + ball).output,
             "ilaw: " + ball + ": found a file, expected a folder that `ilaw run SCENE --out FOLDER` wrote\n");
   for (const char* command :
        {"", "run", "plot", "converge", "study", "list", "describe", "stress", "check", "bench"}) {
-    const Outcome help = run_program(std::string(command) + " --help");
-    EXPECT_EQ(help.code, 0);
-    EXPECT_NE(help.output.find("Example: "), std::string::npos) << command;
+    EXPECT_THAT(run_program(std::string(command) + " --help"), Exits(0, HasSubstr("Example: "))) << command;
   }
 }
 
@@ -82,17 +71,13 @@ TEST(Program, WritesTheReportOfACheck) {
                        "cd " + folder.string() + "; ");
   };
   EXPECT_EQ(report_to("report.xml").code, 0);
-  EXPECT_NE(text_of(folder / "report.xml").find("</testsuite>"), std::string::npos);
-  EXPECT_FALSE(std::filesystem::exists(folder / "report.xml.partial"));
-  const Outcome nowhere = report_to("none/report.xml");
-  EXPECT_EQ(nowhere.code, 1);
-  EXPECT_NE(nowhere.output.find("none/report.xml"), std::string::npos) << nowhere.output;
-  const Outcome device = report_to("/dev/full");
-  EXPECT_EQ(device.code, 2);
-  EXPECT_EQ(device.output.find("ilaw: /dev/full: not a regular file"), 0U) << device.output;
-  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+  EXPECT_THAT(text_of(folder / "report.xml"), HasSubstr("</testsuite>"));
+  EXPECT_FALSE(fs::exists(folder / "report.xml.partial"));
+  EXPECT_THAT(report_to("none/report.xml"), Exits(1, HasSubstr("none/report.xml")));
+  EXPECT_THAT(report_to("/dev/full"), Exits(2, StartsWith("ilaw: /dev/full: not a regular file")));
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
   // Written at once: what is left in the buffer at the end is not refused any more.
-  EXPECT_EQ(run_command(ILAW_PROGRAM " check --rules >/dev/full").code, 1);
+  EXPECT_THAT(run_command(ILAW_PROGRAM " check --rules >/dev/full"), Exits(1, _));
 }
 
 TEST(Program, SaysWhyASceneCannotBeRead) {
@@ -105,20 +90,19 @@ TEST(Program, SaysWhyASceneCannotBeRead) {
   std::ofstream(file).close();
   EXPECT_EQ(output_of(file), "ilaw: " + file + ": the file is empty, expected a scene\n");
   if (geteuid() != 0) {  // root may read everything
-    std::filesystem::permissions(file, std::filesystem::perms::none);
+    fs::permissions(file, fs::perms::none);
     EXPECT_EQ(output_of(file), "ilaw: " + file + ": the file cannot be read: Permission denied\n");
   }
-  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+  EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
 // 0 where no rule is broken, 1 where one is, 2 where there is nothing to check. What is found: tests/check.
 TEST(Program, ChecksALibrary) {
   const Outcome sound = run_program("check coulomb --law coulomb --only mirror --json");
   EXPECT_EQ(sound.code, 0) << sound.output;
-  EXPECT_EQ(nlohmann::json::parse(sound.output).at(0).at("result"), "passed");
-  const Outcome odd = run_program("check " ILAW_ODD_STATUS " --only status-meaning");
-  EXPECT_EQ(odd.code, 1) << odd.output;
-  EXPECT_NE(odd.output.find("seen:    status 42"), std::string::npos) << odd.output;
+  EXPECT_EQ(json::parse(sound.output).at(0).at("result"), "passed");
+  EXPECT_THAT(run_program("check " ILAW_ODD_STATUS " --only status-meaning"),
+              Exits(1, HasSubstr("seen:    status 42")));
   for (const char* wrong :
        {"check", "check no_such_law", "check coulomb --only nonsense", "check coulomb --law tie"})
     EXPECT_EQ(run_program(wrong).code, 2) << wrong;
@@ -136,9 +120,9 @@ TEST(Program, ChecksALibrary) {
     const Outcome outcome =
         run_program(std::string("check coulomb --only mirror --parameters ") + parameters);
     EXPECT_EQ(outcome.code, 2) << outcome.output;
-    EXPECT_NE(outcome.output.find(said), std::string::npos) << outcome.output;
+    EXPECT_THAT(outcome.output, HasSubstr(said));
   }
-  EXPECT_NE(run_program("check --rules").output.find("| `purity-twice` | "), std::string::npos);
+  EXPECT_THAT(run_program("check --rules").output, HasSubstr("| `purity-twice` | "));
 }
 
 // The same checks and exit codes without a host.
@@ -146,14 +130,10 @@ TEST(Program, ChecksALibraryByAProgramOfItsOwn) {
   const std::string program = ILAW_CHECK_PROGRAM;
   const Outcome sound = run_command(program + " coulomb --law coulomb --only mirror --json");
   EXPECT_EQ(sound.code, 0) << sound.output;
-  EXPECT_EQ(nlohmann::json::parse(sound.output).at(0).at("result"), "passed");
+  EXPECT_EQ(json::parse(sound.output).at(0).at("result"), "passed");
   EXPECT_EQ(run_command(program + " " ILAW_ODD_STATUS " --only status-meaning").code, 1);
-  const Outcome nothing = run_command(program + " no_such_law");
-  EXPECT_EQ(nothing.code, 2);
-  EXPECT_EQ(nothing.output.find("ilaw-check: "), 0U) << nothing.output;
-  const Outcome help = run_command(program + " --help");
-  EXPECT_EQ(help.code, 0);
-  EXPECT_NE(help.output.find("Example: ilaw-check "), std::string::npos) << help.output;
+  EXPECT_THAT(run_command(program + " no_such_law"), Exits(2, StartsWith("ilaw-check: ")));
+  EXPECT_THAT(run_command(program + " --help"), Exits(0, HasSubstr("Example: ilaw-check ")));
   EXPECT_EQ(run_command(program + " --rules >/dev/full").code, 1);
 }
 
@@ -188,9 +168,7 @@ TEST(Program, FailsWithCodeOneWhereTheMotionOverflows) {
   const Outcome outcome =
       run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
   EXPECT_EQ(outcome.code, 1) << outcome.output;
-  EXPECT_NE(outcome.output.find("the motion diverged: velocity inf at node 0, step 1, time 1.0"),
-            std::string::npos)
-      << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("the motion diverged: velocity inf at node 0, step 1, time 1.0"));
 }
 
 // A library that breaks its promise is named, with the node.
@@ -207,64 +185,54 @@ Outcome run_with(const std::string& library) {
 
 // The report names a node that is none: it must not lead anywhere.
 TEST(Program, FailsWithCodeOneWhereALawMakesUpABadNode) {
-  const Outcome outcome = run_with(ILAW_ODD_NODE);
-  EXPECT_EQ(outcome.code, 1) << outcome.output;
-  EXPECT_NE(outcome.output.find("interface 'floor' (law 'zero', library " ILAW_ODD_NODE
-                                "): it named node 1099511627776, which is none of the batch"),
-            std::string::npos)
-      << outcome.output;
+  EXPECT_THAT(run_with(ILAW_ODD_NODE),
+              Exits(1, HasSubstr("interface 'floor' (law 'zero', library " ILAW_ODD_NODE
+                                 "): it named node 1099511627776, which is none of the batch")));
 }
 
 TEST(Program, FailsWithCodeOneWhereALawGivesAnUnknownStatus) {
-  const Outcome outcome = run_with(ILAW_ODD_STATUS);
-  EXPECT_EQ(outcome.code, 1) << outcome.output;
-  EXPECT_NE(outcome.output.find("interface 'floor' (law 'zero', library " ILAW_ODD_STATUS
-                                "): found status 42 at node 1, expected 0 to 7"),
-            std::string::npos)
-      << outcome.output;
+  EXPECT_THAT(run_with(ILAW_ODD_STATUS),
+              Exits(1, HasSubstr("interface 'floor' (law 'zero', library " ILAW_ODD_STATUS
+                                 "): found status 42 at node 1, expected 0 to 7")));
 }
 
 TEST(Program, TellsWarningsAndRuns) {
   const auto folder = fresh_folder();
-  nlohmann::json scene = nlohmann::json::parse(text_of(ball));
+  json scene = shipped("bouncing_ball");
   scene["output"]["every"] = 5000;
-  const std::string file = (folder / "scene.json").string();
-  std::ofstream(file) << scene.dump();
-  const Outcome outcome = run_program("run " + file + " --out " + folder.string());
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_EQ(outcome.output.find("ilaw: " + file + ": warning: /output/every: found 5000"), 0U)
-      << outcome.output;
-  EXPECT_EQ(nlohmann::json::parse(text_of(folder / "summary.json"))["warnings"].size(), 1U);
+  const std::string file = written(scene, folder);
+  EXPECT_THAT(run_program("run " + file + " --out " + folder.string()),
+              Exits(0, StartsWith("ilaw: " + file + ": warning: /output/every: found 5000")));
+  EXPECT_EQ(json_of(folder / "summary.json")["warnings"].size(), 1U);
 }
 
-// What an earlier run left and this one does not replace would be taken for its own.
 // A pipe whose reader has gone is an output that cannot be written, no end by a signal.
 TEST(Program, SaysThatItsReaderHasLeft) {
   const std::string folder = fresh_folder().string(),
                     scene = scene_files::named("impact_oscillator.json").string();
   const Outcome outcome = run_command("(exec 3>&1; (sleep 0.3; " ILAW_PROGRAM " run " + scene + " --out " +
                                       folder + " 2>&3; echo code $? >&3) | true)");
-  EXPECT_NE(outcome.output.find("ilaw: standard output: cannot be written"), std::string::npos)
-      << outcome.output;
-  EXPECT_NE(outcome.output.find("code 1\n"), std::string::npos) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("ilaw: standard output: cannot be written"));
+  EXPECT_THAT(outcome.output, HasSubstr("code 1\n"));
 }
 
+// Fields that an earlier run left and this one does not replace would be taken for its own.
 TEST(Program, RemovesTheFieldsOfAnEarlierRun) {
   const auto folder = fresh_folder();
-  nlohmann::json scene = nlohmann::json::parse(text_of(ball));
+  json scene = shipped("bouncing_ball");
   const std::string file = (folder / "scene.json").string(),
                     command = "run " + file + " --out " + folder.string();
   scene["output"]["fields"] = 1000;
   std::ofstream(file) << scene.dump();
   ASSERT_EQ(run_program(command).code, 0);
-  ASSERT_TRUE(std::filesystem::exists(folder / "fields_000002.vtu"));
+  ASSERT_TRUE(fs::exists(folder / "fields_000002.vtu"));
   std::ofstream(folder / "fields_of_mine.vtu") << "mine";
   scene["output"].erase("fields");
   std::ofstream(file) << scene.dump();
   ASSERT_EQ(run_program(command).code, 0);
-  EXPECT_FALSE(std::filesystem::exists(folder / "fields.vtu.series"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "fields_000002.vtu"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "fields_of_mine.vtu"));
+  EXPECT_FALSE(fs::exists(folder / "fields.vtu.series"));
+  EXPECT_FALSE(fs::exists(folder / "fields_000002.vtu"));
+  EXPECT_TRUE(fs::exists(folder / "fields_of_mine.vtu"));
 }
 
 class Stopped : public ::testing::TestWithParam<int> {};
@@ -273,7 +241,7 @@ class Stopped : public ::testing::TestWithParam<int> {};
 // terminal.
 TEST_P(Stopped, LeavesWholeFiles) {
   const auto folder = fresh_folder();
-  nlohmann::json scene = nlohmann::json::parse(text_of(ball));
+  json scene = shipped("bouncing_ball");
   scene["time"]["end"] = 1e6;
   scene["output"]["every"] = 1000;
   scene["output"]["fields"] = 100000;
@@ -281,26 +249,25 @@ TEST_P(Stopped, LeavesWholeFiles) {
   const pid_t child =
       start_program({"run", (folder / "scene.json").string(), "--out", folder.string()}, folder / "messages");
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
-  EXPECT_FALSE(std::filesystem::exists(folder / "history.csv"));  // not whole yet
+  EXPECT_FALSE(fs::exists(folder / "history.csv"));  // not whole yet
   kill(child, GetParam());
   int status = 0;
   waitpid(child, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 1);
-  const nlohmann::json summary = nlohmann::json::parse(text_of(folder / "summary.json"));
+  const json summary = json_of(folder / "summary.json");
   EXPECT_TRUE(summary["interrupted"]);
   const auto steps = summary["steps"].get<std::int64_t>();
   const std::string history = text_of(folder / "history.csv");
   EXPECT_EQ(history.back(), '\n');
   EXPECT_EQ(std::count(history.begin(), history.end(), '\n') - 1, steps / 1000);
-  const nlohmann::json series = nlohmann::json::parse(text_of(folder / "fields.vtu.series"));
+  const json series = json_of(folder / "fields.vtu.series");
   EXPECT_EQ(series["files"].size(), 1U + static_cast<std::size_t>(steps / 100000));
-  for (const auto& file : series["files"])
-    EXPECT_TRUE(std::filesystem::exists(folder / file["name"].get<std::string>()));
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
+  for (const auto& file : series["files"]) EXPECT_TRUE(fs::exists(folder / file["name"].get<std::string>()));
+  for (const auto& entry : fs::directory_iterator(folder))
     EXPECT_NE(entry.path().extension(), ".partial") << entry.path();
   const std::string messages = text_of(folder / "messages");
-  EXPECT_NE(messages.find("interrupted at step"), std::string::npos);
-  EXPECT_EQ(messages.find('\r'), std::string::npos);
+  EXPECT_THAT(messages, HasSubstr("interrupted at step"));
+  EXPECT_THAT(messages, Not(HasSubstr("\r")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Program, Stopped, ::testing::Values(SIGINT, SIGTERM),
@@ -309,7 +276,7 @@ INSTANTIATE_TEST_SUITE_P(Program, Stopped, ::testing::Values(SIGINT, SIGTERM),
 // ---- progress -------------------------------------------------------------------------------------------
 
 // What a run says on a terminal of its own.
-std::string said_on_terminal(const std::string& scene, const std::filesystem::path& folder) {
+std::string said_on_terminal(const std::string& scene, const fs::path& folder) {
   int terminal = -1;
   const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
   if (child == 0) {
@@ -331,11 +298,10 @@ std::string said_on_terminal(const std::string& scene, const std::filesystem::pa
 // stays.
 TEST(Program, ShowsItsProgressOnATerminalOnly) {
   const auto folder = fresh_folder();
-  nlohmann::json scene = nlohmann::json::parse(text_of(ball));
+  json scene = shipped("bouncing_ball");
   scene["time"]["end"] = 200.0;
   scene["output"] = {{"every", 100000}};
-  std::ofstream(folder / "scene.json") << scene.dump();
-  const std::string file = (folder / "scene.json").string();
+  const std::string file = written(scene, folder);
   const std::string said = said_on_terminal(file, folder);
   const std::regex bar("\\r\\[(#*)(\\.*)\\] +([0-9]+) %  [0-9]+ s left ");
   int last = -1;
@@ -355,7 +321,7 @@ TEST(Program, ShowsItsProgressOnATerminalOnly) {
   EXPECT_LT(wiped, result);
   const Outcome piped = run_program("run " + file + " --out " + folder.string());
   EXPECT_EQ(piped.code, 0);
-  EXPECT_EQ(piped.output.find('\r'), std::string::npos);
+  EXPECT_THAT(piped.output, Not(HasSubstr("\r")));
   EXPECT_EQ(std::count(piped.output.begin(), piped.output.end(), '\n'), 1);
 }
 
@@ -370,9 +336,9 @@ TEST(Program, DrawsAHistory) {
   const Outcome outcome = run_program("plot " + folder.string());
   EXPECT_EQ(outcome.code, 0) << outcome.output;
   EXPECT_EQ(text_of(folder / "history.png").substr(1, 3), "PNG");
-  EXPECT_NE(text_of(folder / "history.svg").find("<svg"), std::string::npos);
+  EXPECT_THAT(text_of(folder / "history.svg"), HasSubstr("<svg"));
   // Elsewhere, if asked to.
-  std::filesystem::create_directories(folder / "pictures");
+  fs::create_directories(folder / "pictures");
   const std::string elsewhere = "plot " + folder.string() + " --out " + (folder / "pictures").string();
   ASSERT_EQ(run_program(elsewhere).code, 0);
   EXPECT_EQ(text_of(folder / "pictures" / "history.png").substr(1, 3), "PNG");
@@ -383,51 +349,44 @@ TEST(Program, ListsAndDescribesLaws) {
   const Outcome list = run_program("list");
   EXPECT_EQ(list.code, 0);
   for (const char* law : {"contact", "coulomb", "postit"})
-    EXPECT_NE(list.output.find(law), std::string::npos) << "law " << law;
+    EXPECT_THAT(list.output, HasSubstr(law)) << "law " << law;
   const Outcome described = run_program("describe postit --json");
-  const nlohmann::json postit = nlohmann::json::parse(described.output);
+  const json postit = json::parse(described.output);
   EXPECT_EQ(postit["laws"][0]["id"], "postit");
   EXPECT_EQ(postit["laws"][0]["parameters"].size(), 8U);
   EXPECT_EQ(postit["laws"][0]["parameters"][0]["default"], "inf");
-  EXPECT_EQ(postit["laws"][0]["capabilities"], nlohmann::json({"adhere"}));
+  EXPECT_EQ(postit["laws"][0]["capabilities"], json({"adhere"}));
   for (const auto& variable : postit["laws"][0]["state_variables"])
     EXPECT_EQ(!variable["flags"].empty(), variable["name"] == "window") << variable;
   const std::string text = run_program("describe postit").output;
   for (const char* part : {"tangent_influence", "\n  can: adhere\n", "history, internal"})
-    EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
-  const nlohmann::json coulomb =
-      nlohmann::json::parse(run_program("describe coulomb --json").output)["laws"][0];
+    EXPECT_THAT(text, HasSubstr(part)) << part;
+  const json coulomb = json::parse(run_program("describe coulomb --json").output)["laws"][0];
   for (const auto& parameter : coulomb["parameters"])
-    EXPECT_EQ(parameter["axes"],
-              parameter["name"] == "activation" ? nlohmann::json::array() : nlohmann::json::array({"time"}));
-  EXPECT_NE(run_program("describe coulomb").output.find("  or per_node, table over time  "),
-            std::string::npos);
+    EXPECT_EQ(parameter["axes"], parameter["name"] == "activation" ? json::array() : json::array({"time"}));
+  EXPECT_THAT(run_program("describe coulomb").output, HasSubstr("  or per_node, table over time  "));
 }
 
 // The constructor of this library ends the process that loads it.
 TEST(Program, DescribesWithoutRunningTheLibrary) {
-  namespace fs = std::filesystem;
   const fs::path folder = fs::path(::testing::TempDir()) / ("ilaw_described_" + std::to_string(getpid()));
   fs::create_directories(folder);
   const std::string library = (folder / "aborts.so").string(), path = "ILAW_PATH=" + folder.string() + " ";
   fs::copy_file(ILAW_GOOD_LAW, library);
   ASSERT_EQ(std::system((ILAW_DESCRIBE " " + library).c_str()), 0);
   fs::copy_file(ILAW_ABORTING_LAW, library, fs::copy_options::overwrite_existing);
-  const Outcome described = run_program("describe aborts", path);
-  EXPECT_EQ(described.code, 0);
-  EXPECT_NE(described.output.find("\nzero - Nothing\n"), std::string::npos) << described.output;
+  EXPECT_THAT(run_program("describe aborts", path), Exits(0, HasSubstr("\nzero - Nothing\n")));
   const Outcome list = run_program("list", path);
-  EXPECT_NE(list.output.find("zero  "), std::string::npos) << list.output;
-  EXPECT_EQ(list.output.find("refused"), std::string::npos) << list.output;
+  EXPECT_THAT(list.output, HasSubstr("zero  "));
+  EXPECT_THAT(list.output, Not(HasSubstr("refused")));
   // Without the file its code must run, in a process of its own.
   fs::remove(folder / "aborts.json");
   EXPECT_EQ(run_program("describe aborts", path).code, 1);
-  EXPECT_NE(run_program("list", path).output.find("its code crashed: Aborted"), std::string::npos);
+  EXPECT_THAT(run_program("list", path).output, HasSubstr("its code crashed: Aborted"));
   std::ofstream(folder / "aborts.json") << "{";
   EXPECT_EQ(run_program("describe aborts", path).code, 2);
-  EXPECT_NE(
-      run_program("list", path).output.find("refused: " + (folder / "aborts.json").string() + ": no JSON"),
-      std::string::npos);
+  EXPECT_THAT(run_program("list", path).output,
+              HasSubstr("refused: " + (folder / "aborts.json").string() + ": no JSON"));
   fs::remove_all(folder);
 }
 

@@ -1,22 +1,12 @@
 // Contacts that cannot be reached are left out, which changes no bit: the same as when all are active.
 #include "host_runner.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <omp.h>
 
 #include <cstring>
-#include <random>
 
 namespace ilaw::host::testing {
 namespace {
-
-using nlohmann::json;
-
-bool same_bits(const Dofs& a, const Dofs& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
-}
 
 json with_all_active(json scene) {
   for (json& interface : scene["interfaces"]) interface["skip"] = false;
@@ -38,7 +28,7 @@ std::vector<double> states_of(Scene& scene, const Dofs& u) {
 // Runs a scene in lockstep with itself with all contacts active; returns the tally of the one that skips.
 Tally expect_same_bits(const json& source) {
   omp_set_num_threads(1);
-  Scene scene = scene_of(source.dump()), all = scene_of(with_all_active(source).dump());
+  Scene scene = scene_of(source), all = scene_of(with_all_active(source).dump());
   Integrator integrator = integrator_of(scene), complete = integrator_of(all);
   while (integrator.steps() < scene.steps) {
     integrator.step();
@@ -74,7 +64,7 @@ TEST(ProximityFilter, IsRefreshedWhereAStepIsLongerThanTheWayThatASurfaceIsKnown
 
 // ---- shipped scenes -------------------------------------------------------------------------------------
 
-json shipped(const std::filesystem::path& file) {
+json shortened(const fs::path& file) {
   json scene = read_scene_source(file);
   // Long ones are shortened and coarsened: what is tested is each step.
   if (file.stem() == "dcb_peel") {
@@ -85,10 +75,10 @@ json shipped(const std::filesystem::path& file) {
   return scene;
 }
 
-class ProximityFilterInScene : public ::testing::TestWithParam<std::filesystem::path> {};
+class ProximityFilterInScene : public ::testing::TestWithParam<fs::path> {};
 
 TEST_P(ProximityFilterInScene, GivesTheBitsOfAskingAll) {
-  const Tally tally = expect_same_bits(shipped(GetParam()));
+  const Tally tally = expect_same_bits(shortened(GetParam()));
   // In these, contacts are apart for a while.
   for (const char* apart : {"bar_on_wall", "block_impact", "bouncing_ball", "two_blocks"})
     if (GetParam().stem() == apart) {
@@ -101,23 +91,13 @@ INSTANTIATE_TEST_SUITE_P(Host, ProximityFilterInScene, ::testing::ValuesIn(scene
 
 // ---- drawn scenes ---------------------------------------------------------------------------------------
 
-class Draw {
- public:
-  explicit Draw(unsigned seed) : engine_(seed) {}
-  double in(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-  double tenfold(double low, double high) { return std::pow(10.0, in(low, high)); }
-  int below(int count) { return std::uniform_int_distribution<int>(0, count - 1)(engine_); }
-  json vector(double size) { return {in(-size, size), in(-size, size)}; }
-
- private:
-  std::mt19937 engine_;
-};
+json vector_within(double size, Random& draw) { return {draw(-size, size), draw(-size, size)}; }
 
 // A law that waits for its contacts, with a memory or without.
-json drawn_law(Draw& draw) {
+json drawn_law(Random& draw) {
   switch (draw.below(4)) {
     case 0:
-      return {{"law", "contact"}, {"parameters", {{"restitution", draw.in(0.0, 1.0)}}}};
+      return {{"law", "contact"}, {"parameters", {{"restitution", draw(0.0, 1.0)}}}};
     case 1:
       return {{"law", "coulomb"}, {"parameters", {{"friction", 0.3}, {"activation", "predictive"}}}};
     case 2:
@@ -128,54 +108,55 @@ json drawn_law(Draw& draw) {
 }
 
 // At rest, steady, or to and fro with speeds up to a hundred.
-json drawn_obstacle(Draw& draw) {
-  json obstacle =
-      draw.below(2)
-          ? json{{"type", "plane"}, {"point", {0.0, -2.0}}, {"normal", {draw.in(-1.0, 1.0), 1.0}}}
-          : json{{"type", "sphere"}, {"center", draw.vector(4.0)}, {"radius", draw.tenfold(-1.0, 0.3)}};
+json drawn_obstacle(Random& draw) {
+  json obstacle = draw.below(2)
+                      ? json{{"type", "plane"}, {"point", {0.0, -2.0}}, {"normal", {draw(-1.0, 1.0), 1.0}}}
+                      : json{{"type", "sphere"},
+                             {"center", vector_within(4.0, draw)},
+                             {"radius", draw.decades(-1.0, 0.3)}};
   const int motion = draw.below(3);
-  if (motion == 1) obstacle["velocity"] = draw.vector(2.0);
+  if (motion == 1) obstacle["velocity"] = vector_within(2.0, draw);
   if (motion == 2) {
     obstacle["path"] = json::array();
-    for (double time = 0.0; time < 2.0; time += draw.in(0.02, 0.5))
-      obstacle["path"].push_back({time, draw.in(-1.0, 1.0), draw.in(-1.0, 1.0)});
+    for (double time = 0.0; time < 2.0; time += draw(0.02, 0.5))
+      obstacle["path"].push_back({time, draw(-1.0, 1.0), draw(-1.0, 1.0)});
   }
   return obstacle;
 }
 
 // Points of one interface each, so that sizes of impulses elsewhere cannot make up for a contact that is
 // missed.
-json drawn_points(Draw& draw) {
+json drawn_points(Random& draw) {
   json points = json::array(), interfaces = json::array(), loads = json::array();
   for (int k = 0; k < 8; ++k)
-    points.push_back({{"mass", draw.tenfold(-1.0, 1.0)},
-                      {"position", draw.vector(10.0)},
-                      {"velocity", draw.vector(draw.tenfold(-2.0, 2.0))}});
+    points.push_back({{"mass", draw.decades(-1.0, 1.0)},
+                      {"position", vector_within(10.0, draw)},
+                      {"velocity", vector_within(draw.decades(-2.0, 2.0), draw)}});
   for (const json& nodes : {json{0, 1, 2}, json{3}, json{4, 5}, json{6, 7}}) {
     json interface = drawn_law(draw);
     interface["nodes"] = nodes;
     interface["obstacle"] = drawn_obstacle(draw);
-    if (draw.below(3) == 0) interface["gap_offset"] = draw.in(-0.5, 0.5);
-    if (draw.below(3) == 0) interface["birth"] = draw.in(0.0, 1.0);
-    if (draw.below(3) == 0) interface["death"] = interface.value("birth", 0.0) + draw.in(0.1, 1.0);
+    if (draw.below(3) == 0) interface["gap_offset"] = draw(-0.5, 0.5);
+    if (draw.below(3) == 0) interface["birth"] = draw(0.0, 1.0);
+    if (draw.below(3) == 0) interface["death"] = interface.value("birth", 0.0) + draw(0.1, 1.0);
     interfaces.push_back(interface);
   }
-  loads.push_back({{"type", "gravity"}, {"acceleration", draw.vector(10.0)}});
+  loads.push_back({{"type", "gravity"}, {"acceleration", vector_within(10.0, draw)}});
   // Kicks that make all estimates from earlier steps worthless.
   for (int k = 0; k < 6; ++k)
     loads.push_back({{"type", "shock"},
                      {"nodes", {draw.below(8)}},
-                     {"time", draw.in(0.1, 1.4)},
-                     {"impulse", draw.vector(draw.tenfold(-1.0, 3.0))}});
+                     {"time", draw(0.1, 1.4)},
+                     {"impulse", vector_within(draw.decades(-1.0, 3.0), draw)}});
   return {{"model", {{"type", "points"}, {"dimension", 2}, {"points", points}}},
-          {"time", {{"dt", draw.tenfold(-3.0, -2.0)}, {"end", 1.5}}},
+          {"time", {{"dt", draw.decades(-3.0, -2.0)}, {"end", 1.5}}},
           {"loads", loads},
           {"interfaces", interfaces}};
 }
 
 TEST(ProximityFilter, MissesNoContactOfDrawnPoints) {
   std::int64_t active = 0, skipped = 0, touched = 0;
-  Draw draw(20);
+  Random draw(20);
   for (int k = 0; k < 150 && !HasFailure(); ++k) {
     const Tally tally = expect_same_bits(drawn_points(draw));
     active += tally.active;
@@ -191,18 +172,16 @@ TEST(ProximityFilter, MissesNoContactOfDrawnPoints) {
 // Where the normal turns, a state with axes turns with it from step to step, also out of reach: the way round
 // a sphere counts, not its ends alone.
 TEST(ProximityFilter, AxesOfAStateTurnWithTheNormalOutOfReach) {
-  Draw draw(22);
+  Random draw(22);
   std::int64_t touched = 0;
   for (int k = 0; k < 8 && !HasFailure(); ++k) {
     json points = json::array(), loads = json::array();
     for (int node = 0; node < 4; ++node) {
       points.push_back({{"mass", 1.0},
-                        {"position", {draw.in(2.0, 3.0), draw.in(-1.0, 1.0), draw.in(2.0, 3.0)}},
-                        {"velocity", {draw.in(-4.0, -2.0), draw.in(-2.0, 2.0), 0.0}}});
-      loads.push_back({{"type", "shock"},
-                       {"nodes", {node}},
-                       {"time", 0.9},
-                       {"impulse", {2.0, draw.in(-2.0, 2.0), -5.0}}});
+                        {"position", {draw(2.0, 3.0), draw(-1.0, 1.0), draw(2.0, 3.0)}},
+                        {"velocity", {draw(-4.0, -2.0), draw(-2.0, 2.0), 0.0}}});
+      loads.push_back(
+          {{"type", "shock"}, {"nodes", {node}}, {"time", 0.9}, {"impulse", {2.0, draw(-2.0, 2.0), -5.0}}});
     }
     const Tally tally =
         expect_same_bits({{"model", {{"type", "points"}, {"dimension", 3}, {"points", points}}},
@@ -265,9 +244,7 @@ TEST(ProximityFilter, SeesWhatAnotherInterfaceThrows) {
     scene["interfaces"][0]["birth"] = (step - 0.5) * 1e-3;
     scene["interfaces"][0]["death"] = (step + 0.5) * 1e-3;
     expect_same_bits(scene);
-    Scene run = scene_of(scene.dump());
-    Integrator integrator = integrator_of(run);
-    while (integrator.steps() < run.steps) integrator.step();
+    auto [run, integrator] = run_to_end(scene);
     EXPECT_NEAR(integrator.displacement()[0], 3.31, 1e-12) << step;
   }
 }
@@ -313,11 +290,11 @@ TEST(ProximityFilter, SeesASurfaceTurnItsBack) {
 // thrown on another one, with a third far above it, whose nodes come first in the list and would, if active,
 // share the same facets.
 TEST(ProximityFilter, KeepsTheOrderOfSharedNodes) {
-  Draw draw(21);
+  Random draw(21);
   std::int64_t skipped = 0;
   for (int k = 0; k < 12 && !HasFailure(); ++k) {
-    const double x = draw.in(-0.2, 0.4), y = draw.in(-0.2, 0.4);
-    const json thrown = {draw.in(-10.0, 10.0), draw.in(-10.0, 10.0), draw.in(-10.0, -1.0)};
+    const double x = draw(-0.2, 0.4), y = draw(-0.2, 0.4);
+    const json thrown = {draw(-10.0, 10.0), draw(-10.0, 10.0), draw(-10.0, -1.0)};
     json scene = {{"model",
                    {{"type", "blocks"},
                     {"blocks",
@@ -327,7 +304,7 @@ TEST(ProximityFilter, KeepsTheOrderOfSharedNodes) {
                   {"time", {{"cfl", 0.7}, {"end", 0.2}}},
                   {"interfaces", json::array()}};
     json nodes = json::array();
-    const Scene model = scene_of(scene.dump());
+    const Scene model = scene_of(scene);
     for (const char* face : {"far.z_min", "near.z_min"})
       for (const int node : model.model->sets().at(face).nodes) nodes.push_back(node);
     scene["interfaces"] = {
@@ -341,7 +318,7 @@ TEST(ProximityFilter, KeepsTheOrderOfSharedNodes) {
          {"parameters", {{"friction", 0.3}}},
          {"nodes", "lower.z_min"},
          {"obstacle",
-          {{"type", "plane"}, {"point", {0.0, 0.0, -0.05}}, {"normal", {draw.in(-0.3, 0.3), 0.0, 1.0}}}}}};
+          {{"type", "plane"}, {"point", {0.0, 0.0, -0.05}}, {"normal", {draw(-0.3, 0.3), 0.0, 1.0}}}}}};
     skipped += expect_same_bits(scene).skipped;
   }
   EXPECT_GT(skipped, 1000);

@@ -1,24 +1,14 @@
 // A run that goes on from a checkpoint may have another end, another title and another output.
 #include "host_runner.hpp"
-#include "program_runner.hpp"
-
-#include <nlohmann/json.hpp>
 
 namespace ilaw::host::testing {
 namespace {
 
-using nlohmann::json;
-
-json short_memory() { return read_scene_source(scene_files::named("postit_test3.json")); }
-
-std::filesystem::path written(const json& scene, const std::filesystem::path& folder) {
-  std::ofstream(folder / "scene.json") << scene.dump();
-  return folder / "scene.json";
-}
+json short_memory() { return shipped("postit_test3"); }
 
 std::string in_one_go(const json& scene) {
   const auto folder = fresh_folder();
-  const Outcome run = run_program("run " + written(scene, folder).string() + " --out " + folder.string());
+  const Outcome run = run_scene(scene, folder);
   EXPECT_EQ(run.code, 0) << run.output;
   return text_of(folder / "history.csv");
 }
@@ -34,20 +24,18 @@ TEST(Resume, GoesOnToALaterEnd) {
   for (const double end : {0.6, 1.1, 1.7}) {
     scene["time"]["end"] = end;
     scene["title"] = "until " + std::to_string(end);
-    const std::string file = written(scene, folder).string();
+    const std::string file = written(scene, folder);
     const Outcome run = run_program("run " + file + (end == 0.6 ? out.substr(0, out.rfind(' ')) : out));
     ASSERT_EQ(run.code, 0) << run.output;
     const std::string rows = text_of(folder / "history.csv");
     ASSERT_EQ(rows, whole.substr(0, rows.size())) << end;
   }
   EXPECT_EQ(text_of(folder / "history.csv"), whole);
-  EXPECT_EQ(json::parse(text_of(folder / "summary.json"))["execution"]["resumed_at_step"], 1100);
+  EXPECT_EQ(json_of(folder / "summary.json")["execution"]["resumed_at_step"], 1100);
   scene["time"]["end"] = 1.6;
-  const Outcome back = run_program("run " + written(scene, folder).string() + out);
-  EXPECT_EQ(back.code, 2);
-  EXPECT_NE(back.output.find("is at time 1.7 already, expected an 'end' of 'time' that is not before it"),
-            std::string::npos)
-      << back.output;
+  EXPECT_THAT(
+      run_program("run " + written(scene, folder) + out),
+      Exits(2, HasSubstr("is at time 1.7 already, expected an 'end' of 'time' that is not before it")));
 }
 
 // With other columns: the rows so far stay beside the new ones, which are those of a run that had the columns
@@ -61,11 +49,11 @@ TEST(Resume, GoesOnWithOtherColumns) {
   const std::string out = " --out " + folder.string() + " --checkpoint-every 1000";
   const json end = scene["time"]["end"];
   scene["time"]["end"] = 0.5;
-  ASSERT_EQ(run_program("run " + written(scene, folder).string() + out).code, 0);
+  ASSERT_EQ(run_program("run " + written(scene, folder) + out).code, 0);
   scene["output"] = wanted;
   for (const json& next : {json(1.0), end}) {
     scene["time"]["end"] = next;
-    const Outcome run = run_program("run " + written(scene, folder).string() + out + " --resume");
+    const Outcome run = run_program("run " + written(scene, folder) + out + " --resume");
     ASSERT_EQ(run.code, 0) << run.output;
   }
   const std::string before = text_of(folder / "history.until_step_500.csv");
@@ -76,9 +64,9 @@ TEST(Resume, GoesOnWithOtherColumns) {
   const std::string tail = rows.substr(header.size());
   EXPECT_EQ(tail.substr(0, 6), "0.505,");
   EXPECT_EQ(tail, wide_rows.substr(wide_rows.size() - tail.size()));
-  EXPECT_NE(text_of(folder / "events.csv").find("rupture"), std::string::npos);
-  ASSERT_EQ(run_program("run " + written(scene, folder).string() + out).code, 0);
-  EXPECT_FALSE(std::filesystem::exists(folder / "history.until_step_500.csv"));
+  EXPECT_THAT(text_of(folder / "events.csv"), HasSubstr("rupture"));
+  ASSERT_EQ(run_program("run " + written(scene, folder) + out).code, 0);
+  EXPECT_FALSE(fs::exists(folder / "history.until_step_500.csv"));
 }
 
 }  // namespace

@@ -2,53 +2,54 @@
 #pragma once
 
 #include "host_runner.hpp"
-#include "program_runner.hpp"
 
 #include "base/csv.hpp"
 
-#include <nlohmann/json.hpp>
-
-#include <cstdlib>
-#include <map>
-
 namespace ilaw::host::testing {
 
-// A table by columns; what is no number is 0.
-inline std::map<std::string, std::vector<double>> table_of(const std::filesystem::path& file) {
+// The rows of a table, by column.
+inline std::vector<std::map<std::string, std::string>> rows_of(const fs::path& file) {
   std::ifstream stream(file);
   std::string line;
   std::getline(stream, line);
   const std::vector<std::string> names = csv_cells(line);
-  std::map<std::string, std::vector<double>> table;
-  for (const std::string& name : names) table[name];
+  std::vector<std::map<std::string, std::string>> rows;
   while (std::getline(stream, line)) {
     const std::vector<std::string> cells = csv_cells(line);
-    for (std::size_t k = 0; k < cells.size(); ++k)
-      table[names[k]].push_back(std::strtod(cells[k].c_str(), nullptr));
+    rows.emplace_back();
+    for (std::size_t k = 0; k < cells.size(); ++k) rows.back()[names[k]] = cells[k];
   }
+  return rows;
+}
+// Its columns; what is no number is 0.
+inline std::map<std::string, std::vector<double>> table_of(const fs::path& file) {
+  std::map<std::string, std::vector<double>> table;
+  for (const auto& row : rows_of(file))
+    for (const auto& [name, cell] : row) table[name].push_back(std::strtod(cell.c_str(), nullptr));
   return table;
 }
 
 struct Ran {
   std::map<std::string, std::vector<double>> history;
-  nlohmann::json summary;
+  json summary;
   std::string events;
 
+  const std::vector<double>& operator[](const std::string& column) const { return history.at(column); }
+  std::size_t rows() const { return history.at("time").size(); }
+  double last(const std::string& column) const { return history.at(column).back(); }
+  double energy(const char* part) const { return summary["energy"][part]; }
   // Force times time, summed over the rows.
   double impulse(const std::string& column) const {
     double sum = 0.0, before = 0.0;
-    for (std::size_t k = 0; k < history.at("time").size(); ++k) {
+    for (std::size_t k = 0; k < rows(); before = history.at("time")[k++])
       sum += history.at(column)[k] * (history.at("time")[k] - before);
-      before = history.at("time")[k];
-    }
     return sum;
   }
-  double last(const std::string& column) const { return history.at(column).back(); }
   // Over the rows after a time.
   double mean_after(double time, const std::string& column) const {
     double sum = 0.0;
     int count = 0;
-    for (std::size_t k = 0; k < history.at("time").size(); ++k)
+    for (std::size_t k = 0; k < rows(); ++k)
       if (history.at("time")[k] > time) {
         sum += history.at(column)[k];
         ++count;
@@ -57,16 +58,11 @@ struct Ran {
   }
 };
 
-inline Ran ran(const nlohmann::json& scene, const std::string& options = "") {
+inline Ran ran(const json& scene, const std::string& options = "") {
   const auto folder = fresh_folder();
-  std::ofstream(folder / "scene.json") << scene.dump();
-  const Outcome outcome =
-      run_program("run " + (folder / "scene.json").string() + " --out " + folder.string() + " " + options);
+  const Outcome outcome = run_scene(scene, folder, options);
   EXPECT_EQ(outcome.code, 0) << outcome.output;
-  Ran result{table_of(folder / "history.csv"), nlohmann::json::parse(text_of(folder / "summary.json")),
-             text_of(folder / "events.csv")};
-  std::filesystem::remove_all(folder);
-  return result;
+  return {table_of(folder / "history.csv"), json_of(folder / "summary.json"), text_of(folder / "events.csv")};
 }
 
 }  // namespace ilaw::host::testing

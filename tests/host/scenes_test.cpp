@@ -1,19 +1,13 @@
 // Every shipped scene closes its energy balance, dissipates, and shows what it is there to show.
 #include "host_runner.hpp"
-#include "program_runner.hpp"
-
-#include <algorithm>
-#include <sstream>
 
 namespace ilaw::host::testing {
 namespace {
 
-class ShippedScene : public ::testing::TestWithParam<std::filesystem::path> {};
+class ShippedScene : public ::testing::TestWithParam<fs::path> {};
 
 TEST_P(ShippedScene, ClosesItsBalanceAndNeverGainsEnergyAtInterfaces) {
-  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
-  Scene scene = read_scene(GetParam());
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(read_scene(GetParam()));
   double dissipated = 0.0;
   while (integrator.steps() < scene.steps) {
     integrator.step();
@@ -38,7 +32,6 @@ TEST_P(ShippedScene, ClosesItsBalanceAndNeverGainsEnergyAtInterfaces) {
 // Blocks of contacts against the text of the step, contact by contact: positions, velocities, states,
 // energies.
 TEST_P(ShippedScene, HasTheBitsOfThePlainStep) {
-  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
   Scene fused = read_scene(GetParam()), plain = read_scene(GetParam());
   for (const auto& interface : plain.interfaces) interface->step_plainly();
   Integrator of_fused = integrator_of(fused), of_plain = integrator_of(plain);
@@ -64,9 +57,7 @@ struct Event {
 
 // Instants at which node 0 heals or breaks, or its adhesion changes.
 std::vector<Event> events_of(const char* name) {
-  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
-  Scene scene = read_scene(scene_files::named(name));
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(read_scene(scene_files::named(name)));
   std::vector<Event> events;
   double adhesion = 0.0;
   while (integrator.steps() < scene.steps) {
@@ -142,9 +133,9 @@ TEST(Plot, NamesWhatItDraws) {
   ASSERT_EQ(outcome.code, 0) << outcome.output;
   const std::string script = text_of(folder / "history.gnuplot");
   for (const char* drawn : {"'free'", "'bonded'", "'damage'", "'n3'", "'n7'", "'u0'", "'u1'"})
-    EXPECT_NE(script.find(drawn), std::string::npos) << drawn;
+    EXPECT_THAT(script, HasSubstr(drawn)) << drawn;
   for (const char* absent : {"'broken'", "'healed'", "'spring0'", "'n3.u0'"})
-    EXPECT_EQ(script.find(absent), std::string::npos) << absent;
+    EXPECT_THAT(script, Not(HasSubstr(absent))) << absent;
 }
 
 // gnuplot runs what stands between backquotes, but in single quotes.
@@ -155,7 +146,7 @@ TEST(Plot, RunsNoCommandOfATitle) {
       << R"({"scene": {"title": "It's `touch )" << made.string() << "`\"}}";
   const Outcome outcome = run_program("plot " + folder.string());
   EXPECT_EQ(outcome.code, 0) << outcome.output;
-  EXPECT_FALSE(std::filesystem::exists(made));
+  EXPECT_FALSE(fs::exists(made));
 }
 
 }  // namespace

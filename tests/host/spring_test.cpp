@@ -1,8 +1,6 @@
 // The rotating spring: large rotations, a central force, a stop.
 #include "host_runner.hpp"
 
-#include <string>
-
 namespace ilaw::host::testing {
 namespace {
 
@@ -22,8 +20,7 @@ const std::string stop =
 // and x_{n+1} = x_n + h v keep it. Each step rounds x, f and v, by a few 1e-16 of angular momentum each, at
 // random: a walk of 1e6 steps goes some 1e-13, a bias of one rounding per step would go 1e-10.
 TEST(RotatingSpring, KeepsItsAngularMomentumToRounding) {
-  Scene scene = scene_of(spring(1e-3, 1000.0, ""));
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(spring(1e-3, 1000.0, ""));
   const double start = integrator.angular_momentum()[0];
   EXPECT_NEAR(start, 3.6, 1e-12);  // the first half step's force is central as well
   double drift = 0.0;
@@ -41,8 +38,7 @@ TEST(RotatingSpring, KeepsItsAngularMomentumToRounding) {
 TEST(RotatingSpring, HasAnEnergyErrorOfSecondOrderWithoutDrift) {
   std::vector<double> steps, errors;
   for (const double dt : {8e-3, 4e-3, 2e-3, 1e-3}) {
-    Scene scene = scene_of(spring(dt, 100.0, ""));
-    Integrator integrator = integrator_of(scene);
+    auto [scene, integrator] = simulation_of(spring(dt, 100.0, ""));
     double first_half = 0.0, second_half = 0.0;
     while (integrator.steps() < scene.steps) {
       integrator.step();
@@ -61,8 +57,7 @@ TEST(RotatingSpring, HasAnEnergyErrorOfSecondOrderWithoutDrift) {
 
 // Impacts with friction, until the mass no longer reaches the stop: what the stop takes is all that is lost.
 TEST(RotatingSpring, ClosesItsBalanceOverAMillionStepsAgainstAStop) {
-  Scene scene = scene_of(spring(1e-3, 1000.0, stop));
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(spring(1e-3, 1000.0, stop));
   double momentum = integrator.angular_momentum()[0];
   std::int64_t impacts = 0;
   double worst = 0.0;

@@ -3,17 +3,13 @@
 
 #include "field_file.hpp"
 #include "host_runner.hpp"
-#include "program_runner.hpp"
 
 #include <Eigen/Geometry>
-#include <nlohmann/json.hpp>
 
 #include <vtkCellData.h>
 
 namespace ilaw::host::testing {
 namespace {
-
-using nlohmann::json;
 
 // Displacements u = (F - 1) x.
 Dofs affine(const Model& model, const Eigen::Matrix3d& F) {
@@ -66,8 +62,7 @@ TEST(Stress, OfABarIsItsTension) {
 // In the files: components in ParaView's order, and von Mises' stress of them.
 TEST(Stress, StandsInTheFields) {
   const auto folder = fresh_folder();
-  Scene scene = scene_of(shipped("block_impact").dump());
-  Integrator integrator = integrator_of(scene);
+  auto [scene, integrator] = simulation_of(shipped("block_impact").dump());
   while (integrator.time() < 0.005) integrator.step();
   Fields(scene, folder).write(integrator);
   const auto grid = grid_of(folder / "fields_000000.vtu");

@@ -1,20 +1,11 @@
 // `ilaw study`: the largest stable step, what an error costs, and the program on scenes with known answers.
-#include "host_runner.hpp"
-#include "program_runner.hpp"
+#include "run_result.hpp"
 #include "study/stable_step.hpp"
 #include "study/study_laws.hpp"
 #include "study/work_precision.hpp"
 
-#include <nlohmann/json.hpp>
-
-#include <algorithm>
-#include <map>
-#include <set>
-
 namespace ilaw::host::testing {
 namespace {
-
-using nlohmann::json;
 
 json plane(const std::vector<double>& normal) {
   return {{"type", "plane"}, {"point", std::vector<double>(normal.size(), 0.0)}, {"normal", normal}};
@@ -98,11 +89,10 @@ TEST(Cost, CountsFromTheRunAfterWhichErrorsStayBelow) {
 }
 
 json ball() {
-  return read_scene_source(std::filesystem::path(ILAW_SOURCE) / "docs/results/scenes/bouncing_ball_e08.json");
+  return read_scene_source(fs::path(ILAW_SOURCE) / "docs/results/scenes/bouncing_ball_e08.json");
 }
 
 TEST(StudyLaws, ScaledParametersAreInUnitsOfTheNodeAndTheStep) {
-  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
   json scene = ball();
   scene["model"]["points"][0]["mass"] = 2.0;
   const json entry{
@@ -116,7 +106,7 @@ TEST(StudyLaws, ScaledParametersAreInUnitsOfTheNodeAndTheStep) {
   EXPECT_DOUBLE_EQ(found["damping"], 7.0 * 2.0 / 1e-2);
   EXPECT_EQ(found["friction"], 0.25);
   // The end node of a bar: half an element, m/h^2 = (rho S l/2) (c/l)^2 = E S/(2 l), on every mesh.
-  json bar = read_scene_source(scene_files::named("bar_on_wall.json"));
+  json bar = shipped("bar_on_wall");
   for (const int elements : {10, 35}) {
     bar["model"]["bars"][0]["elements"] = elements;
     const json of_bar = with_law(bar, entry, 0.01, "scene.json")["interfaces"][0]["parameters"];
@@ -137,33 +127,14 @@ TEST(StudyLaws, WithoutANameChangeTheScenesOwn) {
 
 struct Result {
   Outcome outcome;
-  std::filesystem::path folder;
+  fs::path folder;
 };
 
 Result study_of(const json& scene, const std::string& options) {
-  const auto folder = fresh_folder();
-  std::ofstream(folder / "scene.json") << scene.dump();
-  const Outcome outcome = run_program("study " + (folder / "scene.json").string() + " --out " +
-                                      (folder / "results").string() + " --repetitions 1 " + options);
-  return {outcome, folder / "results"};
-}
-
-// The rows of a table, by column.
-std::vector<std::map<std::string, std::string>> rows_of(const std::filesystem::path& file) {
-  std::istringstream table(text_of(file));
-  std::string header, line, name, cell;
-  std::getline(table, header);
-  std::vector<std::map<std::string, std::string>> rows;
-  while (std::getline(table, line)) {
-    std::istringstream names(header), cells(line);
-    rows.emplace_back();
-    while (std::getline(names, name, ',')) {
-      cell.clear();
-      std::getline(cells, cell, ',');
-      rows.back()[name] = cell;
-    }
-  }
-  return rows;
+  const auto folder = fresh_folder(), results = folder / "results";
+  return {run_program("study " + written(scene, folder) + " --out " + results.string() + " --repetitions 1 " +
+                      options),
+          results};
 }
 
 // Positions of contact are of first order, whatever the activation: a tenth of an error costs ten times
@@ -214,17 +185,17 @@ TEST(Study, OfTheBallTellsOrderAndCost) {
   EXPECT_GT(cost["0.001"] / cost["0.01"], 4.0);
   EXPECT_LT(cost["0.001"] / cost["0.01"], 25.0);
 
-  const json laws = json::parse(text_of(study.folder / "study.json"));
+  const json laws = json_of(study.folder / "study.json");
   EXPECT_EQ(laws["reference"], "exact solution");
   EXPECT_EQ(laws["laws"][0]["largest_stable_step"], laws["laws"][0]["largest_step_tried"]);
   EXPECT_LE(laws["laws"][2]["largest_stable_step"].get<double>(), 0.02 * 1.01);
   EXPECT_EQ(text_of(study.folder / "study.png").substr(1, 3), "PNG");
-  EXPECT_NE(text_of(study.folder / "study.svg").find("<svg"), std::string::npos);
+  EXPECT_THAT(text_of(study.folder / "study.svg"), HasSubstr("<svg"));
 }
 
 // Impulse and work so far, and positions, of both components, against the closed form.
 TEST(Study, OfTheObliqueImpactIsOfFirstOrderInAllNorms) {
-  const Result study = study_of(read_scene_source(scene_files::named("oblique_impact.json")),
+  const Result study = study_of(shipped("oblique_impact"),
                                 "--law coulomb:'{\"restitution\": 0.5, \"friction\": 0.3}' --levels 10");
   ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
   std::map<std::string, std::vector<double>> table;
@@ -240,7 +211,7 @@ TEST(Study, OfTheObliqueImpactIsOfFirstOrderInAllNorms) {
 // The scene's own list, shortened: contact's velocities converge over three periods, those of a spring
 // of ten elements do not.
 TEST(Study, OfTheHeldRodTellsContactFromAStiffSpring) {
-  json scene = read_scene_source(scene_files::named("held_rod.json"));
+  json scene = shipped("held_rod");
   const json laws = scene["study"]["laws"];
   scene["study"]["laws"] = {laws[0], laws[4]};
   const Result study = study_of(scene, "--levels 7");
@@ -266,12 +237,12 @@ TEST(Study, TakesTheUsualLawsWhereTheSceneListsNone) {
   scene.erase("exact");
   const Result study = study_of(scene, "--levels 3");
   ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
-  const json found = json::parse(text_of(study.folder / "study.json"));
+  const json found = json_of(study.folder / "study.json");
   EXPECT_EQ(found["reference"], "finest run of the first law");
   ASSERT_EQ(found["laws"].size(), 7U);
   EXPECT_EQ(found["laws"][0]["name"], "contact predictive");
   EXPECT_EQ(found["laws"][2]["name"], "explicit k=0.1");
-  EXPECT_NE(study.outcome.output.find("implicit k=100.0"), std::string::npos) << study.outcome.output;
+  EXPECT_THAT(study.outcome.output, HasSubstr("implicit k=100.0"));
 }
 
 // The same run has other errors beside a reference that is finer by 1.5 and by 8.
@@ -290,53 +261,49 @@ TEST(Study, ComparesWithARunAsFineAsAsked) {
 
 // Of a scene with friction they have it, too; one with another law is compared with itself.
 TEST(Study, TakesLawsThatSuitTheScene) {
-  json rubs = read_scene_source(scene_files::named("oblique_impact.json"));
+  json rubs = shipped("oblique_impact");
   rubs["time"]["end"] = 0.35;  // past the first impact
-  json holds = read_scene_source(scene_files::named("postit_test2.json"));
+  json holds = shipped("postit_test2");
   for (json* scene : {&rubs, &holds}) scene->erase("study");
   const Result rubbed = study_of(rubs, "--levels 2"), held = study_of(holds, "--levels 2");
   ASSERT_EQ(rubbed.outcome.code, 0) << rubbed.outcome.output;
   ASSERT_EQ(held.outcome.code, 0) << held.outcome.output;
-  const json usual = json::parse(text_of(rubbed.folder / "study.json"))["laws"];
+  const json usual = json_of(rubbed.folder / "study.json")["laws"];
   EXPECT_EQ(usual.size(), 7U) << usual;
-  const json own = json::parse(text_of(held.folder / "study.json"))["laws"];
+  const json own = json_of(held.folder / "study.json")["laws"];
   ASSERT_EQ(own.size(), 1U) << own;
   EXPECT_EQ(own[0]["name"], "as in the scene");
 }
 
 TEST(Study, OfSeveralScenesHasAFolderForEach) {
   const auto folder = fresh_folder();
-  const std::string scenes =
-      (std::filesystem::path(ILAW_SOURCE) / "docs/results/scenes/bouncing_ball_e1.json").string() + " " +
-      scene_files::named("postit_test2.json").string();
+  const std::string scenes = (fs::path(ILAW_SOURCE) / "docs/results/scenes/bouncing_ball_e1.json").string() +
+                             " " + scene_files::named("postit_test2.json").string();
   const Outcome outcome = run_program(
       "study " + scenes + " --law '{\"name\": \"own\"}' --levels 2 --repetitions 1 --out " + folder.string());
   ASSERT_EQ(outcome.code, 0) << outcome.output;
   for (const char* name : {"bouncing_ball_e1", "postit_test2"})
-    EXPECT_TRUE(std::filesystem::exists(folder / name / "study.csv")) << name;
+    EXPECT_TRUE(fs::exists(folder / name / "study.csv")) << name;
 }
 
 TEST(Study, EndsWithTheSceneThatFails) {
   const auto folder = fresh_folder();
-  std::filesystem::create_directories(folder);
   std::ofstream(folder / "second.json") << R"({"title": "no scene"})";
   std::ofstream(folder / "third.json") << ball().dump();
-  const Outcome outcome = run_program(
-      "study " + scene_files::named("postit_test2.json").string() + " " + (folder / "second.json").string() +
-      " " + (folder / "third.json").string() +
-      " --law '{\"name\": \"own\"}' --levels 2 --repetitions 1 --out " + (folder / "out").string());
-  EXPECT_EQ(outcome.code, 2) << outcome.output;
-  EXPECT_NE(outcome.output.find("second.json: "), std::string::npos) << outcome.output;
-  EXPECT_TRUE(std::filesystem::exists(folder / "out/postit_test2/study.csv"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "out/third"));
+  EXPECT_THAT(run_program("study " + scene_files::named("postit_test2.json").string() + " " +
+                          (folder / "second.json").string() + " " + (folder / "third.json").string() +
+                          " --law '{\"name\": \"own\"}' --levels 2 --repetitions 1 --out " +
+                          (folder / "out").string()),
+              Exits(2, HasSubstr("second.json: ")));
+  EXPECT_TRUE(fs::exists(folder / "out/postit_test2/study.csv"));
+  EXPECT_FALSE(fs::exists(folder / "out/third"));
 }
 
 TEST(Study, RefusesWhatItCannotCompare) {
   const auto refusal = [](const json& scene, const std::string& options, const std::string& said) {
     const Result study = study_of(scene, options);
-    EXPECT_EQ(study.outcome.code, 2) << study.outcome.output;
-    EXPECT_FALSE(std::filesystem::exists(study.folder));
-    EXPECT_NE(study.outcome.output.find(said), std::string::npos) << study.outcome.output;
+    EXPECT_THAT(study.outcome, Exits(2, HasSubstr(said)));
+    EXPECT_FALSE(fs::exists(study.folder));
   };
   const json good = ball();
   json scene = good;
@@ -361,14 +328,14 @@ TEST(Study, RefusesWhatItCannotCompare) {
   refusal(good, "--law Contact", "/study/laws/0/law: found \"Contact\"");
   const auto folder = fresh_folder();
   for (const char* name : {"a", "b"}) {
-    std::filesystem::create_directories(folder / name);
+    fs::create_directories(folder / name);
     std::ofstream(folder / name / "ball.json") << good.dump();
   }
   const Outcome alike =
       run_program("study " + (folder / "a/ball.json").string() + " " + (folder / "b/ball.json").string() +
                   " --out " + (folder / "out").string());
   EXPECT_EQ(alike.code, 2);
-  EXPECT_NE(alike.output.find("found two scenes called 'ball'"), std::string::npos) << alike.output;
+  EXPECT_THAT(alike.output, HasSubstr("found two scenes called 'ball'"));
   for (const char* options : {"--levels 0", "--factor 1", "--refine space", "--repetitions 0"})
     refusal(good, options, "--");
 }

@@ -1,13 +1,9 @@
 // What a run leaves of itself: the summary, and the columns of the history.
-#include "host_runner.hpp"
-#include "program_runner.hpp"
+#include "run_result.hpp"
 
 #include "base/stopwatch.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <chrono>
-#include <string>
 
 namespace ilaw::host::testing {
 namespace {
@@ -25,37 +21,26 @@ std::string sliding_mass(const std::string& law, const std::string& parameters) 
 // mean_opening and what is named history stay in the state and out of the table.
 TEST(Program, HistoryLeavesOutTheLawsBookkeeping) {
   const auto folder = fresh_folder();
-  std::ofstream(folder / "scene.json") << sliding_mass("cohesive", R"({"strength": 1, "toughness": 1})");
-  const Outcome outcome =
-      run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
-  ASSERT_EQ(outcome.code, 0) << outcome.output;
+  ASSERT_EQ(
+      run_scene(json::parse(sliding_mass("cohesive", R"({"strength": 1, "toughness": 1})")), folder).code, 0);
   const std::string history = text_of(folder / "history.csv");
   EXPECT_EQ(
       history.substr(0, history.find('\n')),
       "time,n0.u0,n0.u1,n0.u2,n0.v0,n0.v1,n0.v2,n0.r0,n0.r1,n0.r2,n0.gap,n0.status,n0.damage,n0.opening");
 }
 
-nlohmann::json summary_of(const nlohmann::json& scene) {
-  const auto folder = fresh_folder();
-  std::ofstream(folder / "scene.json") << scene.dump();
-  const Outcome outcome =
-      run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
-  EXPECT_EQ(outcome.code, 0) << outcome.output;
-  return nlohmann::json::parse(text_of(folder / "summary.json"));
-}
-
-nlohmann::json shipped(const char* name) { return nlohmann::json::parse(text_of(scene_files::named(name))); }
+json summary_of(const json& scene) { return ran(scene).summary; }
 
 // Every contact of every step is active or skipped, and has a status.
 TEST(Summary, CountsActiveAndSkippedContacts) {
-  nlohmann::json scene = shipped("block_impact.json");
+  json scene = shipped("block_impact");
   const auto nodes = 9 * 9 * 9 + 9 * 9;
-  const nlohmann::json skipping = summary_of(scene);
+  const json skipping = summary_of(scene);
   for (auto& interface : scene["interfaces"]) interface["skip"] = false;
-  const nlohmann::json complete = summary_of(scene);
+  const json complete = summary_of(scene);
   const auto steps = skipping["steps"].get<std::int64_t>();
-  for (const nlohmann::json& summary : {skipping, complete}) {
-    const nlohmann::json& count = summary["execution"]["node_steps"];
+  for (const json& summary : {skipping, complete}) {
+    const json& count = summary["execution"]["node_steps"];
     EXPECT_EQ(count["active"].get<std::int64_t>() + count["skipped"].get<std::int64_t>(), nodes * steps);
     std::int64_t sum = 0;
     for (const auto& [status, times] : summary["status_counts"].items()) sum += times.get<std::int64_t>();
@@ -69,8 +54,8 @@ TEST(Summary, CountsActiveAndSkippedContacts) {
 }
 
 TEST(Summary, TellsTheInterfacesShareAndMemory) {
-  const nlohmann::json summary = summary_of(shipped("postit_test3.json"));
-  const nlohmann::json& seconds = summary["seconds"];
+  const json summary = summary_of(shipped("postit_test3"));
+  const json& seconds = summary["seconds"];
   const double share = summary["execution"]["interface_share"];
   EXPECT_GT(share, 0.0);
   EXPECT_LT(share, 1.0);
@@ -81,15 +66,15 @@ TEST(Summary, TellsTheInterfacesShareAndMemory) {
   EXPECT_GE(seconds["total"].get<double>(),
             seconds["interfaces"].get<double>() + seconds["internal_forces"].get<double>());
   // The state, with a window of 80 buckets, and some vectors beside it.
-  const nlohmann::json& interface = summary["interfaces"][0];
+  const json& interface = summary["interfaces"][0];
   EXPECT_GE(interface["state_size"], 80);
   EXPECT_GE(interface["bytes_per_node"], 8 * interface["state_size"].get<int>());
   EXPECT_LE(interface["bytes_per_node"], 8 * interface["state_size"].get<int>() + 300);
 }
 
 // Unit masses on springs of k = 1e4, stable up to 2/sqrt(k H) = 0.02 where explicit.
-nlohmann::json mass_on_spring(const char* integration, double dt) {
-  nlohmann::json scene = nlohmann::json::parse(sliding_mass("penalty", R"({"stiffness": 1e4})"));
+json mass_on_spring(const char* integration, double dt) {
+  json scene = json::parse(sliding_mass("penalty", R"({"stiffness": 1e4})"));
   scene["model"]["points"][0]["velocity"] = {0, 0, -1};
   scene["time"] = {{"dt", dt}, {"end", 5 * dt}};
   scene["interfaces"][0]["parameters"]["integration"] = integration;
@@ -98,13 +83,13 @@ nlohmann::json mass_on_spring(const char* integration, double dt) {
 
 TEST(Summary, WarnsOfAnExplicitSpringThatIsTooStiff) {
   for (const double dt : {0.013, 0.019, 0.021, 0.037}) {
-    const nlohmann::json summary = summary_of(mass_on_spring("explicit", dt));
+    const json summary = summary_of(mass_on_spring("explicit", dt));
     EXPECT_NEAR(summary["stable_step"].get<double>(), 0.02, 1e-15) << dt;
     int told = 0;
     for (const std::string warning : summary["warnings"])
       told += warning.find("where a law is stable up to 0.02 at its nodes") != std::string::npos;
     EXPECT_EQ(told, dt > 0.02 ? 1 : 0) << dt << ": " << summary["warnings"];
-    const nlohmann::json implicit = summary_of(mass_on_spring("implicit", dt));
+    const json implicit = summary_of(mass_on_spring("implicit", dt));
     EXPECT_EQ(implicit["stable_step"], "inf") << "dt " << dt;
     EXPECT_TRUE(implicit["warnings"].empty()) << dt << ": " << implicit["warnings"];
   }
@@ -114,8 +99,7 @@ TEST(Summary, WarnsOfAnExplicitSpringThatIsTooStiff) {
 TEST(Clock, StepsThatAreTimedStandForThoseThatAreNot) {
   double share = 0.0;
   for (int attempt = 0; attempt < 5 && share < 0.25; ++attempt) {  // others may hold the processor
-    Scene scene = scene_of(mass_on_spring("implicit", 1e-5).dump());
-    Integrator integrator = integrator_of(scene);
+    auto [scene, integrator] = simulation_of(mass_on_spring("implicit", 1e-5).dump());
     const auto start = std::chrono::steady_clock::now();
     while (integrator.steps() < 3000) integrator.step();
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
@@ -150,12 +134,12 @@ TEST(Clock, AnInterruptionStandsForItself) {
 
 // Contacts that share nodes: how many sweeps, and what the last one still changed.
 TEST(Summary, TellsHowCoupledContactsConverged) {
-  const nlohmann::json coupled = summary_of(shipped("two_blocks.json"))["coupling"];
+  const json coupled = summary_of(shipped("two_blocks"))["coupling"];
   EXPECT_GT(coupled["sweeps_max"], 1);
   EXPECT_GE(coupled["sweeps"], coupled["sweeps_max"]);
   EXPECT_LE(coupled["residual_max"], 1e-14);
   EXPECT_EQ(coupled["steps_unconverged"], 0);
-  const nlohmann::json single = summary_of(shipped("two_bars.json"))["coupling"];
+  const json single = summary_of(shipped("two_bars"))["coupling"];
   EXPECT_EQ(single["sweeps"], 0);
   EXPECT_EQ(single["residual_max"], 0.0);
 }

@@ -1,16 +1,12 @@
 // Planes that tilt: gap, normal and velocity of the surface belong together.
 #include "host_runner.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <Eigen/Geometry>
 
 #include <functional>
 
 namespace ilaw::host::testing {
 namespace {
-
-using nlohmann::json;
 
 constexpr double fall = 10.0, rate = 0.2;
 
@@ -78,8 +74,7 @@ TEST(Tilt, CarriesWhatSticks) {
       json source = on_plane(dimension, s, 50.0, dt);
       source["interfaces"][0]["obstacle"]["path"] =
           dimension == 2 ? json{{0, 0, 0}, {4, 0.4, 0.2}} : json{{0, 0, 0, 0}, {4, 0.4, 0.2, 0}};
-      Scene scene = scene_of(source.dump());
-      Integrator integrator = integrator_of(scene);
+      auto [scene, integrator] = simulation_of(source);
       while (integrator.steps() < scene.steps) {
         integrator.step();
         const double t = integrator.time(), angle = rate * t;
@@ -95,8 +90,7 @@ TEST(Tilt, CarriesWhatSticks) {
 TEST(Tilt, KeepsWhatSlidesOnThePlane) {
   std::vector<double> steps, depths;
   for (const double dt : {0.02, 0.0137, 0.0091, 0.0059}) {
-    Scene scene = scene_of(on_plane(2, 0.8, 0.0, dt).dump());
-    Integrator integrator = integrator_of(scene);
+    auto [scene, integrator] = simulation_of(on_plane(2, 0.8, 0.0, dt).dump());
     double deepest = 0.0;
     while (integrator.time() < 1.0) {
       integrator.step();
@@ -113,7 +107,7 @@ TEST(Tilt, KeepsWhatSlidesOnThePlane) {
 // The gap is the distance to the plane through the point, with the normal turned about the axis.
 TEST(Tilt, GapAndNormalAreThoseOfTheAngle) {
   const json source = on_plane(3, 0.8, 0.3, 0.01);
-  Scene scene = scene_of(source.dump());
+  Scene scene = scene_of(source);
   const Counterpart& plane = *scene.interfaces[0]->setup().counterpart;
   for (const double time : {0.0, 1.3, 2.9}) {
     const Eigen::Vector3d normal =
@@ -144,8 +138,7 @@ TEST(Tilt, IsNotMissedByTheFilter) {
     source["interfaces"][0]["obstacle"]["tilt"]["angles"] = {{"rows", {{0.2, 0}, {0.4, 0.2}}},
                                                              {"smooth", true}};
     source["time"]["end"] = 0.5;
-    Scene scene = scene_of(source.dump());
-    Integrator integrator = integrator_of(scene);
+    auto [scene, integrator] = simulation_of(source);
     while (integrator.steps() < scene.steps) {
       integrator.step();
       ASSERT_GT(scene.interfaces[0]->gap_at(0, integrator.displacement(), integrator.time()), -1e-3);
@@ -164,9 +157,7 @@ TEST(Tilt, MemoryTurnsWithThePlane) {
     source["interfaces"][0]["parameters"] = {{"strength", 1e3}, {"toughness", 10.0}, {"stiffness", 1e6}};
     source["interfaces"][0]["obstacle"]["tilt"]["angles"] = {{0, 0}, {3, 1.5}};
     source["model"]["points"][0]["velocity"] = dimension == 2 ? json{0, 0.15} : json{0, 0.15, 0};
-    Scene scene = scene_of(source.dump());
-    Integrator integrator = integrator_of(scene);
-    while (integrator.steps() < scene.steps) integrator.step();
+    auto [scene, integrator] = run_to_end(source);
     const double angle = 1.5 * integrator.time() / 3.0;
     EXPECT_NEAR(integrator.displacement()[0], 0.3 * (std::cos(angle) - 1.0), 1e-3);
     EXPECT_NEAR(integrator.displacement()[1], 0.3 * std::sin(angle), 1e-3);
@@ -176,10 +167,9 @@ TEST(Tilt, MemoryTurnsWithThePlane) {
 // The shipped scene: an elastic block sticks, then slides as a whole at tan(angle) = 0.4, at 2.2903.
 TEST(Tilt, BlockSlidesAtTheAngleOfItsFriction) {
   for (const double cfl : {0.7, 0.53, 0.31}) {
-    json source = read_scene_source(scene_files::named("tilting_plane.json"));
+    json source = shipped("tilting_plane");
     source["time"]["cfl"] = cfl;
-    Scene scene = scene_of(source.dump());
-    Integrator integrator = integrator_of(scene);
+    auto [scene, integrator] = simulation_of(source);
     const Eigen::Index middle = 3 * scene.output.watch.at(0);
     double slid_at = 0.0;
     while (integrator.steps() < scene.steps) {
@@ -197,14 +187,14 @@ TEST(Tilt, RefusesWhatCannotTilt) {
   json& obstacle = source["interfaces"][0]["obstacle"];
   const std::string pointer = "/interfaces/0/obstacle";
   obstacle["tilt"]["axis"] = {0, 0, 1};
-  EXPECT_EQ(refusal_of_scene(source),
+  EXPECT_EQ(refusal_of(source),
             pointer + "/tilt/axis: found [0,0,1], expected none: a plane in 2D tilts in its plane");
   obstacle["tilt"].erase("axis");
   obstacle["rate"] = 1.0;
-  EXPECT_EQ(refusal_of_scene(source), pointer + ": found both 'tilt' and 'rate', expected one of them");
+  EXPECT_EQ(refusal_of(source), pointer + ": found both 'tilt' and 'rate', expected one of them");
   source = on_plane(3, 0.0, 0.3, 0.01);
   source["interfaces"][0]["obstacle"]["tilt"].erase("axis");
-  EXPECT_EQ(refusal_of_scene(source), pointer + "/tilt: key 'axis' is missing, about which the plane tilts");
+  EXPECT_EQ(refusal_of(source), pointer + "/tilt: key 'axis' is missing, about which the plane tilts");
 }
 
 }  // namespace

@@ -3,9 +3,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/host_runner.hpp"
 
-#include <array>
-#include <memory>
-
 namespace ilaw::host::testing {
 namespace {
 
@@ -14,10 +11,9 @@ using Row = std::array<double, 3>;  // displacement, velocity, impulse
 std::vector<Row> rows_of_fortran(double h, int count, const std::string& library) {
   const std::string command =
       std::string(ILAW_BAR) + " " + number(h) + " " + std::to_string(count) + " " + library;
+  std::istringstream answer(run_command(command).output);
   std::vector<Row> rows;
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
-  Row row{};
-  while (std::fscanf(pipe.get(), "%lf %lf %lf", &row[0], &row[1], &row[2]) == 3) rows.push_back(row);
+  for (Row row; answer >> row[0] >> row[1] >> row[2];) rows.push_back(row);
   return rows;
 }
 

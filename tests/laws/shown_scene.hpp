@@ -6,10 +6,8 @@
 
 namespace ilaw::host::testing {
 
-struct ShownScene {
-  explicit ShownScene(const char* name)
-      : scene((setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1), read_scene(scene_files::named(name)))),
-        integrator(integrator_of(scene)) {}
+struct ShownScene : Simulation {
+  explicit ShownScene(const char* name) : Simulation(read_scene(scene_files::named(name))) {}
 
   template <class Look>
   void run(Look look) {
@@ -18,9 +16,6 @@ struct ShownScene {
       look();
     }
   }
-
-  Scene scene;
-  Integrator integrator;
 };
 
 }  // namespace ilaw::host::testing

@@ -1,8 +1,6 @@
 // The scene of cohesive shows what its text says.
 #include "laws/shown_scene.hpp"
 
-#include <algorithm>
-
 namespace ilaw::host::testing {
 namespace {
 

@@ -1,9 +1,6 @@
 // The scene of rubber shows what its text says.
 #include "laws/shown_scene.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace ilaw::host::testing {
 namespace {
 

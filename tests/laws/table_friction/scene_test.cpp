@@ -1,8 +1,6 @@
 // The scene of table_friction shows what its text says.
 #include "laws/shown_scene.hpp"
 
-#include <cmath>
-
 namespace ilaw::host::testing {
 namespace {
 
