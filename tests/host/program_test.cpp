@@ -77,7 +77,7 @@ TEST(Program, WritesTheReportOfACheck) {
   EXPECT_THAT(report_to("/dev/full"), Exits(2, StartsWith("ilaw: /dev/full: not a regular file")));
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
   // Written at once: what is left in the buffer at the end is not refused any more.
-  EXPECT_THAT(run_command(ILAW_PROGRAM " check --rules >/dev/full"), Exits(1, _));
+  EXPECT_THAT(run_command(ILAW_PROGRAM " check --rules >/dev/full"), Exits(1, ::testing::_));
 }
 
 TEST(Program, SaysWhyASceneCannotBeRead) {
