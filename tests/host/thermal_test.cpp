@@ -406,7 +406,7 @@ TEST(Thermal, RefusesAStepAboveThatOfConduction) {
   const Bar bar{.elements = 5};
   const double stable = bar.stable_step();
   EXPECT_NO_THROW(scene_of(scene_with({column(bar, "tread", 0)}, stable, 1.0).dump()));
-  const std::string said = refusal_of_scene(scene_with({column(bar, "tread", 0)}, 1.001 * stable, 1.0));
+  const std::string said = refusal_of(scene_with({column(bar, "tread", 0)}, 1.001 * stable, 1.0));
   EXPECT_NE(said.find("the stable step of conduction in 'tread'"), std::string::npos) << said;
   json scene = scene_with({column(bar, "tread", 0)}, stable, 1.0);
   scene["time"] = {{"cfl", 0.5}, {"end", 1.0}};
@@ -417,16 +417,16 @@ TEST(Thermal, RefusesTwoTemperaturesOfANode) {
   json scene = sliding_point(0.01, 0.5);
   scene["interfaces"][0]["law"] = "conductance";
   scene["interfaces"][0]["parameters"] = {{"conductance", 1}};
-  EXPECT_NE(refusal_of_scene(scene).find("/interfaces/0/obstacle: key 'temperature' is missing"),
+  EXPECT_NE(refusal_of(scene).find("/interfaces/0/obstacle: key 'temperature' is missing"),
             std::string::npos);
   scene["interfaces"][0]["obstacle"]["temperature"] = {{0, 300}, {1, 320}};
-  EXPECT_EQ(refusal_of_scene(scene), "not refused");
+  EXPECT_EQ(refusal_of(scene), "not refused");
   scene["fields"] = {{"temperature", 300}};
-  EXPECT_NE(refusal_of_scene(scene).find("/fields/temperature: found a value, expected none"),
+  EXPECT_NE(refusal_of(scene).find("/fields/temperature: found a value, expected none"),
             std::string::npos);
   scene.erase("fields");
   scene["interfaces"][0]["parameters"]["temperature"] = 300;
-  EXPECT_NE(refusal_of_scene(scene).find("/interfaces/0/parameters/temperature: found a value"),
+  EXPECT_NE(refusal_of(scene).find("/interfaces/0/parameters/temperature: found a value"),
             std::string::npos);
 }
 
@@ -435,13 +435,13 @@ TEST(Thermal, RefusesContactWithABodyWithoutTemperature) {
   const json law = {{"law", "coulomb"}, {"parameters", {{"friction", 0.3}}}};
   json scene = two_columns(bar, bar, 0.001, 1.0, law);
   scene["model"]["blocks"][0].erase("thermal");
-  EXPECT_NE(refusal_of_scene(scene).find("/interfaces/0/against: found node 20, which has no temperature"),
+  EXPECT_NE(refusal_of(scene).find("/interfaces/0/against: found node 20, which has no temperature"),
             std::string::npos)
-      << refusal_of_scene(scene);
+      << refusal_of(scene);
   scene = sliding_point(0.01, 0.5);
   scene["model"]["points"][0].erase("thermal");
   scene["interfaces"][0]["obstacle"]["temperature"] = 300;
-  EXPECT_NE(refusal_of_scene(scene).find("/interfaces/0/nodes: found node 0, which has no temperature"),
+  EXPECT_NE(refusal_of(scene).find("/interfaces/0/nodes: found node 0, which has no temperature"),
             std::string::npos);
 }
 
