@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-// What acts in a scene at most: a force, and impulses besides.
+// Upper bounds of the loads of a scene: a force, and impulses besides.
 struct Drive {
   double force = 0.0, impulse = 0.0;
 };

@@ -78,7 +78,7 @@ std::string value_in_words(const json& part) {
   return part.value("type", std::string("a value")) + limits;
 }
 
-// What the schema allows for a value, in words.
+// The values that the schema allows, in words.
 std::string allowed(const json& part) {
   if (part.contains("anyOf")) {
     std::string text;

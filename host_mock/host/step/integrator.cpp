@@ -25,7 +25,7 @@ void leave_driven_undamped(const Loads& loads, Eigen::Index d, const Dofs& undam
       }
 }
 
-// What of it tells best that it diverged, and its name.
+// The vector that shows the divergence best, and its name.
 struct WildMotion {
   const char* name;
   const Dofs& wild;
@@ -86,7 +86,7 @@ void Integrator::step() {
   check_energy();
 }
 
-// What is told of a run that failed is of its last whole step.
+// A failed run reports its last complete step.
 void Integrator::take_back_step() {
   if (!has_begun_step_) return;
   v_ = v_before_;
