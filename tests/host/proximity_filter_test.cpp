@@ -53,7 +53,7 @@ Tally expect_same_bits(const json& source) {
   return integrator.tally();
 }
 
-// Of a mesh surface it is known which facets are nearest within a way, which a node may go in one step.
+// The nearest facets of a mesh surface are known within a distance, which a node may go in one step.
 TEST(ProximityFilter, IsRefreshedWhereAStepIsLongerThanTheWayThatASurfaceIsKnownFor) {
   const double dt = 1.0, speed = 1.0, slower = 0.5, way = 0.4;
   ProximityFilter filter;

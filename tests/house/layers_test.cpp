@@ -1,4 +1,4 @@
-// Who may include whom (docs/architecture.md): what lies lower knows nothing of what stands on it.
+// Rules of inclusion (docs/architecture.md): a lower layer knows nothing of those above it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
