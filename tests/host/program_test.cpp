@@ -96,7 +96,7 @@ TEST(Program, SaysWhyASceneCannotBeRead) {
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
-// 0 where no rule is broken, 1 where one is, 2 where there is nothing to check. What is found: tests/check.
+// 0 where no rule is broken, 1 where one is, 2 where there is nothing to check. Findings: tests/check.
 TEST(Program, ChecksALibrary) {
   const Outcome sound = run_program("check coulomb --law coulomb --only mirror --json");
   EXPECT_EQ(sound.code, 0) << sound.output;

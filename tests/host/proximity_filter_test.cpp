@@ -260,7 +260,7 @@ json soft_block(const char* name, const json& corner, const json& size, const js
 }
 
 // A plate turns over below a block that is far off and flies away from it: now the block is behind the
-// surface, which lets it go no further, however little the two have approached. What was known of the gap
+// surface, which lets it go no further, however little the two have approached. The known bound of the gap
 // holds for as long as the surface is not looked for again, no longer.
 TEST(ProximityFilter, SeesASurfaceTurnItsBack) {
   constexpr double rate = 10.0, mass = 0.025;  // of a node

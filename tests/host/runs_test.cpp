@@ -293,7 +293,7 @@ json block_on_plane() {
 }
 
 // Nodes on a plane do not tell which side is meant, nodes behind it do; and a place in millimeters
-// is near to no node of a body in metres.
+// is near to no node of a body in meters.
 TEST(Warnings, TellOfTheWrongSideAndOfWrongUnits) {
   using Warnings = std::vector<std::string>;
   const auto warnings_of = [](const char* pointer, const char* value) {

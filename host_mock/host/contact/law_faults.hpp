@@ -1,5 +1,5 @@
-// law_faults.hpp - what a law answers with the code ILAW_OK, but cannot be. What goes into sums
-// shows in them, at no cost per contact; the contact is sought once something is wrong.
+// law_faults.hpp - impossible results that a law returns with the code ILAW_OK. Faults of summed values
+// show in the sums, at no cost per contact; the contact is sought once something is wrong.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

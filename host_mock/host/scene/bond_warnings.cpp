@@ -1,4 +1,4 @@
-// Bonds that nothing in the scene can break: a wrong unit, often. What acts is bounded from above, by
+// Bonds that nothing in the scene can break: a wrong unit, often. The drive of a scene is bounded above, by
 // all loads and momenta together on the weakest node; the factor leaves room for waves. And bonds whose
 // memory is too short for the step.
 // SPDX-License-Identifier: BSD-3-Clause

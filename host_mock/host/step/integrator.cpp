@@ -126,7 +126,7 @@ double Integrator::move_and_kick() {
   }));
 }
 
-// As impulses: shocks have no force. What no load changes is summed once.
+// As impulses: shocks have no force. Impulses that no load changes are summed once.
 void Integrator::sum_forces(StepTimes step) {
   if (!loads_are_steady_) {
     const auto each = [&](auto change) {
