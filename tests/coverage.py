@@ -74,7 +74,7 @@ def is_elf(file):
 
 
 def exported(form):
-    """What llvm-cov says of all programs and libraries of the build."""
+    """The report of llvm-cov on all programs and libraries of the build."""
     files = [file for file in sorted(BUILD.rglob("*")) if file.is_file() and not file.is_symlink()
              and (os.access(file, os.X_OK) or file.suffix == ".so") and file.suffix != ".o" and is_elf(file)]
     objects = [word for file in files for word in ("-object", str(file))]
@@ -89,7 +89,7 @@ def name_of(file):
 
 
 def lines_reached():
-    """Of each file, by line, whether something went there."""
+    """By file and line, whether the line was executed."""
     lines, name = collections.defaultdict(dict), ""
     for record in exported("lcov").splitlines():
         key, _, text = record.partition(":")
@@ -108,7 +108,7 @@ def count_at(segments, place):
 
 
 def branches_reached():
-    """Of each file, by place of the condition and outcome, whether something went there."""
+    """By file, place of the condition and outcome, whether that outcome occurred."""
     branches = collections.defaultdict(dict)
     for file in json.loads(exported("text"))["data"][0]["files"]:
         found = collections.defaultdict(lambda: [0, 0])

@@ -29,13 +29,13 @@ API = Path(__file__).resolve().parent.parent
 # Enumerations that are classes in Python: first enumerator, class, base, prefix of its members, docstring.
 # All other enumerators, and the last of an enumeration where it counts the others, are constants of the module.
 CLASSES = [
-    ("ILAW_OK", "Code", "IntEnum", "ILAW_", "What a function returns."),
+    ("ILAW_OK", "Code", "IntEnum", "ILAW_", "Codes that functions return."),
     ("ILAW_DELASSUS_SCALAR", "Delassus", "Flags", "ILAW_DELASSUS_", "Form of the inverse mass H at a node."),
     ("ILAW_FRAME_LOCAL", "Frame", "Flags", "ILAW_FRAME_", "Axes in which vectors and H are given."),
     ("ILAW_NUMBERS_DOUBLE", "Numbers", "Flags", "ILAW_NUMBERS_", "Number type of the arrays of a batch."),
     ("ILAW_INPUT_GAP", "Input", "Flags", "ILAW_INPUT_", "Arrays that a law reads besides v_free and delassus."),
     ("ILAW_OUTPUT_VELOCITY", "Output", "Flags", "ILAW_OUTPUT_", "Optional arrays that a law can write."),
-    ("ILAW_CAN_ADHERE", "Capability", "Flags", "ILAW_CAN_", "What more a law can do."),
+    ("ILAW_CAN_ADHERE", "Capability", "Flags", "ILAW_CAN_", "Further abilities of a law."),
     ("ILAW_MAY_SKIP_FRESH", "Permission", "Flags", "ILAW_MAY_", "Nodes out of reach that the host may skip."),
     ("ILAW_PARAMETER_NUMBER", "ParameterKind", "IntEnum", "ILAW_PARAMETER_", "Kind of a parameter."),
     ("ILAW_PARAMETER_IS_REQUIRED", "ParameterFlag", "Flags", "ILAW_PARAMETER_", "Properties of a parameter."),

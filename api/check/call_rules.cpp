@@ -246,7 +246,7 @@ void expect_code_without(const Trial& trial, const Inputs& in, ilaw_input ilaw_b
          refused ? "ILAW_INVALID_ARGUMENT (-1)" : "as with it");
 }
 
-// What only energies and amounts need may be missing where neither is asked for.
+// Inputs that only energies and amounts need may be missing where neither is requested.
 void balance_inputs(const Subject& subject) {
   for_trials(
       subject,

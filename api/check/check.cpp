@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-// What a child process hands back: numbers as text, which keeps all of them.
+// A finding as a child process returns it: numbers as text, which keeps all digits.
 json written(const Finding& finding) {
   json arrays = json::array();
   for (const NamedArray& array : finding.arrays) {

@@ -14,7 +14,7 @@ struct NamedArray {
   std::vector<double> values;
 };
 
-// A rule is broken. What is allowed is said by the rule, and by "allowed" where a number can be given.
+// A rule is broken. The rule says what is allowed, and "allowed" does where a number can be given.
 struct Finding {
   std::string seen, allowed, setting;
   std::vector<NamedArray> arrays;

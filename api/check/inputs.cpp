@@ -110,7 +110,7 @@ void draw_parameters(Inputs& in, std::size_t node, const Trial& trial, Draw& dra
   set([](const ilaw_parameter&, double constant) { return constant; });
 }
 
-// What belongs to the nodes and stays.
+// Draws the inputs that belong to the nodes and stay the same.
 void draw_fixed(Inputs& in, const Trial& trial, Draw& draw) {
   const bool has_offset = draw.one_in(2);
   for (std::size_t i = 0; i < in.count; ++i) {

@@ -85,7 +85,7 @@ void missing(const Subject& subject) {
 void range(const Subject& subject) {
   for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
     if (is_choice(p)) return false;
-    // Of whole numbers the next ones, which beyond 2^53 are further off.
+    // A count needs the next whole number, which beyond 2^53 is more than 1 away.
     const bool whole = p.kind == ILAW_PARAMETER_COUNT;
     const double below = whole ? std::min(p.minimum - 1.0, std::nextafter(p.minimum, -infinity))
                                : p.minimum - 1e-9 * std::max(1.0, std::abs(p.minimum));

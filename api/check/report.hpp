@@ -8,7 +8,7 @@
 
 namespace ilaw::check {
 
-// What is needed to repeat a finding.
+// Data needed to repeat a finding.
 struct Checked {
   std::string file;
   std::vector<std::uint64_t> seeds;

@@ -22,7 +22,7 @@ struct Subject {
   const std::optional<Values>& given;
 };
 
-// What must hold before a rule can be judged.
+// Prerequisites for judging a rule.
 enum class Needs { nothing, library, instance, motion };
 
 // Throws Finding or NotJudged.

@@ -32,7 +32,7 @@ struct Layout {
   std::vector<std::size_t> nodes{};        // of the script, in their order; empty: all
 };
 
-// Of each node in turn, whatever the layout was.
+// Results node by node, whatever the layout of the arrays was.
 struct Results {
   std::size_t nodes = 0;
   std::int32_t code = ILAW_OK;
@@ -94,7 +94,7 @@ class Arrays {
   std::vector<double> state();
   std::vector<double> impulses();  // with the moments after them
   std::vector<double> amounts();   // all of them, one after another
-  // Of the last evaluate: an output that was written where no node of the batch is; null where none was.
+  // The output that the last evaluate wrote outside the nodes of the batch; null where there is none.
   const char* written_beside();
   ilaw_batch& batch() { return batch_; }
   void load(const Inputs& in);

@@ -39,7 +39,7 @@ constexpr bool is_instrumented = false;
 
 constexpr std::size_t most_result = 1U << 18, most_printed = 2000, most_written = 1U << 20;
 
-// What the child leaves for its parent, whatever becomes of it.
+// Memory that the child leaves for its parent, however the child ends.
 struct Shared {
   std::array<char, 64> call;
   std::array<char, 160> what;

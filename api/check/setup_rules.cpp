@@ -181,7 +181,7 @@ void sizes_long(const Subject& subject) {
   });
 }
 
-// What an instance gives while the setup is there, and once it is rubbish.
+// An instance must give the same while the setup exists and after it has become rubbish.
 void setup_copied(const Subject& subject) {
   for_trials(subject, [](const Trial& trial, Draw& draw) {
     auto given = std::make_unique<SetupStruct>(trial.setup, trial.values);

@@ -120,7 +120,7 @@ std::size_t place_of(const char* name, Forbidden kind) {
   return k;
 }
 
-// What stands in place of a forbidden function. It never returns, so its arguments do not matter.
+// Replacement of a forbidden function. It never returns, so its arguments do not matter.
 template <std::size_t K>
 [[noreturn]] void called() {
   end_here("called ", named[K].name);
@@ -131,7 +131,7 @@ constexpr auto substitutes(std::index_sequence<K...>) {
 }
 constexpr auto all_substitutes = substitutes(std::make_index_sequence<named.size()>{});
 
-// What the dynamic section of a loaded file says.
+// Entries of the dynamic section of a loaded file.
 struct Dynamic {
   ElfW(Addr) base = 0;
   const ElfW(Sym) * symbols = nullptr;

@@ -1,4 +1,4 @@
-// What fix ilaw keeps per atom, as LAMMPS moves it: with the atom to other ranks, into restart files and
+// Data of fix ilaw per atom, as LAMMPS moves it: with the atom to other ranks, into restart files and
 // back.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fix_ilaw.hpp"

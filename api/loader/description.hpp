@@ -15,7 +15,7 @@ namespace ilaw::loading {
 // Throws refusal: which file, what was found, what was expected.
 const ilaw_plugin* checked_plugin(const std::string& file, const ilaw_plugin* given, storage& kept);
 
-// What an instance says of itself; file and law name it in messages, minor is that of its library.
+// Origin of an instance; file and law name it in messages, minor is that of its library.
 struct instance_origin {
   const std::string& file;
   const ilaw_law& law;

@@ -178,7 +178,7 @@ const ilaw_law& chosen_law(const ilaw_library& library, const char* id) {
                 library.path + ": no law '" + (id ? id : "") + "', expected one of: " + known);
 }
 
-// What a law says may go to a terminal.
+// A law's text may be shown on a terminal: characters that are not printable become '?'.
 std::string line_of(const char* text) {
   std::string line(text);
   if (ilaw::loading::clean_text(line, false)) return line;

@@ -69,7 +69,7 @@ measure_orders() {
 if wanted orders; then measure_orders; fi
 
 # ---- laws side by side
-# What errors of displacement cost each law: steps, and in brackets steps and time over the first law's.
+# Cost of errors of displacement for each law: steps, and in brackets steps and time over the first law's.
 study_table() {
   jq --raw-output '.laws[] | [.name, .largest_stable_step / .largest_step_tried] | @tsv' "$1/study.json" | awk -F'\t' -v needed="$1/study_needed.csv" '
     function short(x) { return x == "" ? "-" : sprintf("%.2g", x) }
@@ -173,7 +173,7 @@ run_long() {
     { turn = momentum0 ? size(momentum / momentum0 - 1) : 0; turned = turn > turned ? turn : turned }
     END { tenth = int((NR - 1) / 10)
           for (k = 0; k < tenth; ++k) { first += held[2 + k]; last += held[NR - k] }
-          # Of the bar half steps and whole ones are too far apart for a sum to mean something.
+          # Half steps and whole steps of the bar are too far apart for a sum to mean something.
           drift = momentum0 ? sprintf("%.1e,%.1e", last / first - 1, turned) : ","
           printf "%s,%d,%.2f,%.1e,%s,%.1e\n", name, steps, seconds / contact, error, drift, given / energy0 }' "$out/history.csv" >>"$long"
 }

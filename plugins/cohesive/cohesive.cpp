@@ -243,7 +243,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
     return peak < infinity && energy > 0.0 && 0.5 * peak * peak * flexibility() > energy;
   }
 
-  // Of an impulse, as the bond weighs it.
+  // An impulse with the weights of the bond.
   struct pull {
     V normal, shear, square, size;
     pull(vector<V> r, V weight) {
@@ -329,7 +329,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
            ((!all.is_delayed) & below);
   }
 
-  // What is the same for all trials of a step.
+  // Values that all trials of a step share.
   struct curve_before {
     V damage;
     secant<V> now;

@@ -116,7 +116,7 @@ struct scalar_friction {
     return {normal, 0.0 - found.factor * b * n1, 0.0 - found.factor * b * n2, 0.0, found.status.code()};
   }
   double free_with(const answer<double>& a) const { return p.free + p.c1 * a.t1 + p.c2 * a.t2; }
-  // What the spring gives in a step with these impulses.
+  // The impulse that the spring gives in a step with these impulses.
   double given(const answer<double>& a, double normal) const {
     const double v = free_with(a) + p.delassus * normal, e = (0.5 - spring.lead) / (0.5 + spring.lead);
     if (spring.stiffness < infinity) return spring.given(v);

@@ -119,7 +119,7 @@ struct penalty {
     return limit_with(node.delassus.normal(), node.delassus.largest_tangential(), slope);
   }
 
-  // What all nodes of a batch share.
+  // Values that all nodes of a batch share.
   struct numbers {
     bool loses, withholds, rubs;
     V step, lead, ratio;  // h, tau, zeta

@@ -187,7 +187,7 @@ struct normal_spring {
     return {select(linear > 0.0, x * held, (root - b) * unscaled), select(linear > 0.0, b + root, give),
             root * unscaled};
   }
-  // What a rigid spring multiplies by it counts nowhere.
+  // The stiffness, or zero for a rigid spring, where products with it are not used.
   ILAW_KIT_INLINE V soft() const { return zero_unless(stiffness < infinity, stiffness); }
   // S along a way that the spring goes in a step, p = 1.
   ILAW_KIT_INLINE V force_along(V travel) const {

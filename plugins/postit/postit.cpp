@@ -107,7 +107,7 @@ struct postit {
     const bool has_area = adhesion_limit < infinity || initial_adhesion > 0.0;
     return reads_gap | reads_v_previous | (has_area ? reads_area : 0U);
   }
-  // What is bonded from the start holds at any gap.
+  // An initial bond holds at any gap.
   std::uint32_t permissions() const { return may_skip_free | (initial_adhesion > 0.0 ? 0U : may_skip_fresh); }
   const char* conflict() const {
     if (initial_adhesion <= adhesion_limit) return nullptr;

@@ -269,7 +269,7 @@ void Runner::fill_step(int n) {
   fill_state();
 }
 
-// What the law wrote, sometimes mixed with what it wrote before, sometimes with numbers that nobody wrote.
+// Takes the state that the law wrote, sometimes mixed with an older one or with numbers that nobody wrote.
 void Runner::fill_state() {
   const std::size_t size = drawn_.info().state_size;
   if (size == 0) return;
@@ -325,7 +325,7 @@ void Runner::check(std::int32_t code, const ilaw_report& report, bool evaluated,
   }
 }
 
-// What an evaluated node may not have, empty where it has none of it.
+// The violation at an evaluated node, empty where there is none.
 std::string Runner::wrong_at(std::int64_t node, bool is_bad) const {
   bool zero = true;
   for (std::size_t c = 0; c < drawn_.dimension(); ++c) {

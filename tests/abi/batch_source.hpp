@@ -38,7 +38,7 @@ class Draw {
   // Without a division, for n below 2^32: Lemire (2019), Fast random integer generation in an interval.
   std::uint64_t below(std::uint64_t n) { return (bits() >> 32) * n >> 32; }
   bool one_in(std::uint64_t n) { return below(n) == 0; }
-  // Of 53 bits in [0, 1): exact, whatever the compiler is allowed.
+  // A number of 53 bits in [0, 1): exact, whatever the compiler is allowed.
   double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   double within(double low, double high) { return low + (high - low) * unit(); }
 
@@ -191,7 +191,7 @@ class Drawn {
   ilaw_instance_info info_{};
 };
 
-// What a run of batches saw.
+// Counts over a run of batches.
 struct Tally {
   std::uint64_t batches = 0, of_floats = 0, nodes = 0, bad = 0, refused = 0;
   std::uint64_t digest = 0xCBF29CE484222325;  // of all outputs: FNV-1a (Fowler, Noll, Vo), by words

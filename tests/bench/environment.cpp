@@ -1,4 +1,4 @@
-// What it costs that evaluate keeps the host's floating-point environment: contact as it is beside contact
+// The cost of keeping the host's floating-point environment in evaluate: contact as it is beside contact
 // compiled without, called in turn in one process. Medians; docs/benchmarks.md tells what was measured.
 // Usage: ilaw_bench_environment [PAIRS]
 // SPDX-License-Identifier: BSD-3-Clause

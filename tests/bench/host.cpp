@@ -1,4 +1,4 @@
-// What the host takes per node and step beside the law alone, in the same run.
+// Time of the host per node and step beside the law alone, in the same run.
 //
 //   ilaw_bench_host [--law NAME] [--situation NAME] [--points N...] [--threads N...] [--repetitions K]
 //                   [--out FILE.csv]

@@ -20,7 +20,7 @@ typedef struct quantity {
   int slot;                   /* among the parameters per node, from 1; 0: not per node */
 } quantity;
 
-/* What an instance that breaks a rule remembers of its calls. */
+/* Memory of the calls of an instance that breaks a rule. */
 typedef struct memory {
   double last_sum, first_time, largest_step;
   int started, saw_nine;
@@ -42,7 +42,7 @@ struct ilaw_instance {
 /* Whether this is the rule to break. */
 int breaks(const char* rule);
 
-/* What instances share that breaks a rule; not a global of the library. */
+/* Memory shared by instances that break a rule; not a global of the library. */
 typedef struct shared_memory {
   const ilaw_instance *last, *before;
   uint32_t infos;

@@ -25,7 +25,7 @@ static ilaw_result refuse(ilaw_report* report, ilaw_result code, const char* rea
   return code;
 }
 
-/* What is wrong with a batch as a whole. */
+/* The mistake in a batch as a whole; null where there is none. */
 static const char* wrong_list(const ilaw_batch* b) {
   int64_t k;
   if (b->index_base != 0 && b->index_base != 1) return "index_base is neither 0 nor 1";

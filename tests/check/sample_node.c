@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What a node is given, and what it gets. */
+/* Inputs and outputs of a node. */
 typedef struct node {
   int d, global, floats, strays;
   double v[3], n[3], t[3], h[3][3], gap, area, damping, friction, temperature;
@@ -83,7 +83,7 @@ static double sum_of(const ilaw_input* from, const ilaw_batch* b, int width) {
   return sum;
 }
 
-/* Of all that a result may depend on. */
+/* The sum of all values on which a result may depend. */
 static double sum_of_all(const ilaw_batch* b, int d) {
   double sum = b->time + b->velocity_step + sum_of(&b->v_free, b, d) + sum_of(&b->delassus, b, 1) +
                sum_of(&b->gap, b, 1) + sum_of(&b->area, b, 1) + sum_of(&b->state_in, b, 1);
@@ -247,7 +247,7 @@ static const char* defect(node* at, const ilaw_instance* made, const ilaw_batch*
   return NULL;
 }
 
-/* What a rule is broken by in the coefficient of friction. */
+/* The coefficient of friction, wrong where a rule is to be broken by it. */
 static double spoilt_friction(const node* at, const ilaw_instance* made, const ilaw_batch* b,
                               const double* tangential) {
   const double along = dot(tangential, at->t);

@@ -6,7 +6,7 @@
 
 double read_array(const ilaw_input* from, int64_t i, int c);
 int64_t node_of(const ilaw_batch* b, int64_t k);
-/* What instances that break a rule keep of a call. */
+/* Keeps what instances that break a rule remember of a call. */
 void remember(const ilaw_instance* made, const ilaw_batch* b);
 /* Steps the k-th node of the batch; says what is wrong with it, null where nothing is. */
 const char* step_node(const ilaw_instance* made, const ilaw_batch* b, int64_t k, int after_bad);

@@ -1,2 +1,2 @@
-// What C cannot do.
+// Throws, which C cannot do.
 extern "C" void throw_something() { throw 1; }

@@ -71,7 +71,7 @@ int characters(const std::string& text) {
   return static_cast<int>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-// What cannot be broken counts as one word: formulas and code within a line.
+// Formulas and code within a line cannot be broken: each counts as one word.
 std::string with_units_joined(const std::string& text) {
   static const std::regex unit("\\$[^$]*\\$|`[^`]*`");
   std::string joined;
@@ -226,7 +226,7 @@ TEST(Pages, TestsThatHoldThePromisesExist) {
   EXPECT_GT(named, 60);
 }
 
-// What the two tests at the top rest on.
+// The two tests at the top rest on is_too_long.
 TEST(Pages, WhatIsTooLong) {
   const std::string word(101, 'a'), words = std::string(60, 'a') + ' ' + std::string(60, 'b');
   EXPECT_TRUE(is_too_long(words));

@@ -54,7 +54,7 @@ std::int32_t info(const ilaw_instance*, ilaw_instance_info* out) {
 
 std::int32_t initialise(const ilaw_instance*, const ilaw_batch*, ilaw_report*) { return ILAW_OK; }
 
-// Of the last node.
+// Breaks the answer of the last node.
 std::int32_t answer(const ilaw_batch& batch, ilaw_report& report) {
   const std::int64_t last = batch.node_count - 1;
   double* const energy = batch.energy.values + last * batch.energy.node_stride;

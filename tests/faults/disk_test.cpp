@@ -165,8 +165,8 @@ struct Lost {
 
 class Power : public ::testing::TestWithParam<Lost> {};
 
-// What only the newest checkpoint goes on from may be lost: the one before it is taken. What both need may
-// not.
+// A file that only the newest checkpoint needs may be lost: the one before it is taken. A file that both need
+// may not be lost.
 TEST_P(Power, ThatFailsIsNoticed) {
   const Reference reference = reference_of(shortened("bouncing_ball", 0.2));
   const auto folder = fresh_folder();

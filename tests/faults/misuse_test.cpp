@@ -198,7 +198,7 @@ TEST(Scene, ThatNoMemoryHoldsIsRefusedBeforeItIsMade) {
               Exits(2, HasSubstr("/model/bars: found 2e+08 nodes")));
 }
 
-// What a double cannot hold is no result.
+// A value that a double cannot hold is no result.
 TEST(Scene, WhoseEnergyOverflowsDiverged) {
   const auto folder = fresh_folder();
   json scene = shipped("bouncing_ball");

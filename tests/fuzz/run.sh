@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fuzzes what reads files, descriptions and scenes of strangers, all at once, for some seconds (default 30), from the
-# kept corpus. What is found lands in build/fuzz/found. Usage: tests/fuzz/run.sh [SECONDS]
+# kept corpus. Inputs that fail land in build/fuzz/found. Usage: tests/fuzz/run.sh [SECONDS]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 

@@ -213,7 +213,7 @@ TEST(AnalystScenes, StickyNoteComesOffTwice) {
   EXPECT_EQ(run.last("n4.ruptures"), 2.0);
 }
 
-// What falls from rest is stopped in the end by an impulse of its weight times the time.
+// A body that falls from rest is stopped in the end by an impulse of its weight times the time.
 TEST(AnalystScenes, HailGivesItsWeightToTheSlope) {
   const Ran run = ran(scene_named("hail"));
   double momentum = 0.0;

@@ -133,7 +133,7 @@ struct PanelEdges {
   double left, right;
 };
 
-// Of the first picture in a script, in pixels.
+// Panels of the first picture in a script, in pixels.
 std::vector<PanelEdges> panels_in(const std::string& script) {
   std::smatch found;
   EXPECT_TRUE(std::regex_search(script, found, std::regex("size ([0-9.]+),")));
@@ -214,7 +214,7 @@ TEST(Bench, NamesTheEntryOfAFileThatItRefuses) {
   }
 }
 
-// Of any command, an option that takes a number wants a finite one of its range.
+// An option of any command that takes a number wants a finite one of its range.
 TEST(Options, RefuseWhatIsNoNumberOfTheirRange) {
   const std::pair<const char*, const char*> options[] = {
       {"bench contact --touching", "from 0 to 1"},

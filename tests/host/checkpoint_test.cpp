@@ -114,7 +114,7 @@ json long_scene() {
   return scene;
 }
 
-// What must not depend on whether a run was interrupted: all but the time it took, and which contacts were
+// Results that must not depend on an interruption: all but the time the run took, and which contacts were
 // active, which depends on when the near ones were last found.
 json results_of(const fs::path& folder) {
   json summary = json_of(folder / "summary.json");
@@ -239,7 +239,7 @@ TEST(Checkpoint, OfNoRunOrAnotherOneIsRefused) {
   EXPECT_EQ(run_program("run " + file + out + " --checkpoint-every 0").code, 2);
 }
 
-// Of a history of a few bytes, which it writes.
+// The mark of a history of a few bytes, which is written here.
 FileMark history_in(const fs::path& folder) {
   std::ofstream(folder / "history.csv") << "time\n";
   FileMark mark;
@@ -296,7 +296,7 @@ std::string resealed(const std::string& bytes, const std::string& pointer, const
   return {sealed.begin(), sealed.end()};
 }
 
-// What lay in memory before is not in the file: sums and counts that are the same are the same bytes.
+// The file holds no bytes that lay in memory before: equal sums and counts give equal bytes.
 TEST(Checkpoint, OfEqualAccountsIsEqualBytes) {
   std::array<std::string, 2> written;
   for (const int byte : {0, 1}) {

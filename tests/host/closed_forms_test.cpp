@@ -108,7 +108,7 @@ TEST(StickSlip, TurnsAtExactInstants) {
 // ---- double cantilever ----
 // The half beam of thickness t lifted by w is open over a = (3 E t^3 w^2/(8 G))^(1/4) - 0.605 t: beam theory,
 // with the correction for the root's rotation of Williams (1989), chi = 0.605 for an isotropic beam of nu =
-// 0. What was broken, over toughness and width, is the crack's length.
+// 0. The energy of rupture, over toughness and width, is the crack's length.
 TEST(DoubleCantilever, OpensAsBeamTheorySays) {
   auto [scene, integrator] = run_to_end(shipped("dcb_peel"));
   const double t = 0.05, w = 0.01, toughness = 5e-8, width = 0.0125;

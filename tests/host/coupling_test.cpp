@@ -4,7 +4,7 @@
 namespace ilaw::host::testing {
 namespace {
 
-// What the sweeps left fulfils each law: Signorini and Coulomb, to rounding of the largest speed. Contact
+// The iterations end at a solution of each law: Signorini and Coulomb, to rounding of the top speed. Contact
 // arrives at gap 0, but turns a node that was leaving no faster than it left; friction is Coulomb's unless it
 // would push a node whose slip turned round, which it may do less than that.
 void expect_law(const Interface& interface, int contact_index, const Dofs& v, const Dofs& before,

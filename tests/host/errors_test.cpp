@@ -21,7 +21,7 @@ ExactNode bounce(double instant) {
   return node;
 }
 
-// What a run would leave of it.
+// The trace that a run of the node would leave.
 Trace trace_of(const ExactNode& node, double dt, int steps) {
   Trace trace;
   trace.dt = dt;

@@ -74,7 +74,7 @@ TEST(ExactMotion, PostitTest3FollowsTheStoryByHand) {
   EXPECT_NEAR(exact.displacement(1.7), risen, 1e-9);
 }
 
-// What pulls has to make up for what pressed within the memory of 0.1. A press of 0.2 at 0.25, then a pull of
+// A pull has to make up for the presses within the memory of 0.1. A press of 0.2 at 0.25, then a pull of
 // 2.01 from 0.3 on: the press leaves the window at 0.35, and 0.2 are passed 0.2/2.01 after the pull began. A
 // pull of 1.9 never fills the window with more than 0.19.
 TEST(ExactMotion, PostitCountsPressesWithinItsMemory) {

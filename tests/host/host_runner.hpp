@@ -49,7 +49,7 @@ inline Scene scene_of(const char* text) { return scene_of(std::string(text)); }
 inline Scene scene_of(const json& source) { return scene_of(source.dump()); }
 inline Scene scene_of(Scene scene) { return scene; }
 
-// What a scene is refused with.
+// The message with which a scene is refused.
 template <class Source>
 std::string refusal_of(const Source& source) {
   try {
@@ -120,7 +120,7 @@ Simulation run_to_end(Source source) {
   return Simulation(scene_of(std::move(source)), true);
 }
 
-// Of a number in a scene, all its digits.
+// All digits of a number, for a scene.
 inline std::string number(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.17g", value);

@@ -1,4 +1,4 @@
-// What a scene may say about an interface beside its law: tangent, birth and death, offset of the gap,
+// Keys of an interface beside its law: tangent, birth and death, offset of the gap,
 // parameters that vary over time or from node to node.
 #include "host_runner.hpp"
 
@@ -105,7 +105,7 @@ TEST(BirthAndDeath, LeaveTheStatusFree) {
         << "step " << step;
 }
 
-// Who looks on makes no contact: contacts have the order of their nodes, of which steps make use.
+// Watching makes no contact: contacts have the order of their nodes, of which steps make use.
 TEST(Watched, NodesAreContactsInTheirOrder) {
   json scene =
       points_on_plane({point({0, 0, 0}, {0, 0, 0}), point({1, 0, 0}, {0, 0, 0}), point({2, 0, 0}, {0, 0, 0})},

@@ -29,7 +29,7 @@ TEST(Plane, MeasuresAlongItsNormalWhateverItsLength) {
   EXPECT_EQ(Vector3d(surface.normal), Vector3d(0, 0, 1));
 }
 
-// Of many nodes at once they are found another way, by one component where the normal lies along an axis.
+// The gaps of many nodes at once are found another way, by one component where the normal is along an axis.
 TEST(Plane, GivesManyNodesTheGapsOfEachToTheBit) {
   std::mt19937_64 random(7);
   const std::vector<PointMass> points(9, {1.0, 1.0, random_vector(random), Vector::Zero(3), Vector()});
@@ -81,7 +81,7 @@ TEST(RoundObstacle, HasANormalAtItsCenter) {
   }
 }
 
-// Of all shapes: the normal is a unit vector, the point less gap times normal is on the surface, and the gap
+// For all shapes: the normal is a unit vector, the point less gap times normal is on the surface, and the gap
 // grows along the normal as the way does.
 TEST(Obstacle, HasAGapThatIsADistanceAlongItsNormal) {
   std::mt19937_64 random(5);

@@ -8,7 +8,7 @@ constexpr double toughness = 6.0, width = 0.01, edge = 1e-3, stiffness = 10.0;  
 constexpr double line_mass = 0.04, air = 10.0, speed = 0.02;
 constexpr int bonded = 17, free_edges = 9;
 
-// Glued along x but for its end, which stands off at an angle. What comes off in the time of one
+// Glued along x but for its end, which stands off at an angle. The part that comes off in the time of one
 // edge adds that edge to the free end: so its tip moves by (cos - 1, sin) times the speed.
 json peeled(double angle) {
   const double c = std::cos(angle), s = std::sin(angle);

@@ -20,7 +20,7 @@ void press_everywhere(json& scene, double pressure) {
         {{"type", "pressure"}, {"surface", std::string("b.") + face}, {"history", {{0, pressure}}}});
 }
 
-// Of all elements, whose faces are bilinear: det J is of degree two along each axis.
+// The volume of all elements, whose faces are bilinear: det J is of degree two along each axis.
 double volume_of(const Model& model, const Dofs& u) {
   const double gauss = 1.0 / std::sqrt(3.0);
   constexpr int corner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},

@@ -96,7 +96,7 @@ TEST(Program, SaysWhyASceneCannotBeRead) {
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
-// 0 where no rule is broken, 1 where one is, 2 where there is nothing to check. What is found: tests/check.
+// 0 where no rule is broken, 1 where one is, 2 where there is nothing to check. Findings: tests/check.
 TEST(Program, ChecksALibrary) {
   const Outcome sound = run_program("check coulomb --law coulomb --only mirror --json");
   EXPECT_EQ(sound.code, 0) << sound.output;
@@ -137,7 +137,7 @@ TEST(Program, ChecksALibraryByAProgramOfItsOwn) {
   EXPECT_EQ(run_command(program + " --rules >/dev/full").code, 1);
 }
 
-// What is misspelt is named, rather than what is missing for it.
+// A misspelled name is reported, rather than what is missing because of it.
 TEST(Program, NamesWhatItDoesNotKnow) {
   const auto first_line = [](const std::string& arguments) {
     const std::string output = run_program(arguments).output;
@@ -275,7 +275,7 @@ INSTANTIATE_TEST_SUITE_P(Program, Stopped, ::testing::Values(SIGINT, SIGTERM),
 
 // ---- progress -------------------------------------------------------------------------------------------
 
-// What a run says on a terminal of its own.
+// The output of a run on a terminal of its own.
 std::string said_on_terminal(const std::string& scene, const fs::path& folder) {
   int terminal = -1;
   const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);

@@ -53,7 +53,7 @@ Tally expect_same_bits(const json& source) {
   return integrator.tally();
 }
 
-// Of a mesh surface it is known which facets are nearest within a way, which a node may go in one step.
+// The nearest facets of a mesh surface are known within a distance, which a node may go in one step.
 TEST(ProximityFilter, IsRefreshedWhereAStepIsLongerThanTheWayThatASurfaceIsKnownFor) {
   const double dt = 1.0, speed = 1.0, slower = 0.5, way = 0.4;
   ProximityFilter filter;
@@ -260,7 +260,7 @@ json soft_block(const char* name, const json& corner, const json& size, const js
 }
 
 // A plate turns over below a block that is far off and flies away from it: now the block is behind the
-// surface, which lets it go no further, however little the two have approached. What was known of the gap
+// surface, which lets it go no further, however little the two have approached. The known bound of the gap
 // holds for as long as the surface is not looked for again, no longer.
 TEST(ProximityFilter, SeesASurfaceTurnItsBack) {
   constexpr double rate = 10.0, mass = 0.025;  // of a node

@@ -294,7 +294,7 @@ std::vector<std::string> warnings_of(const char* pointer, const char* value) {
   return scene_of(scene).warnings;
 }
 
-// What can run, but can hardly be meant, is run and told.
+// A scene that can run, but can hardly be meant, runs with a warning.
 TEST(Warnings, TellWhatCanHardlyBeMeant) {
   using Warnings = std::vector<std::string>;
   EXPECT_EQ(warnings_of("/title", "\"as it is\""), Warnings{});

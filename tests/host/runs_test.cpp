@@ -184,7 +184,7 @@ TEST(Plot, SaysWhyThereIsNoPicture) {
             "ilaw: gnuplot failed; run it on " + (folder / "history.gnuplot").string() + " to see why\n");
 }
 
-// One that watches a node, one that sums forces: no picture has both.
+// One run watches a node, the other sums forces: no picture has both.
 TEST(Plot, OfRunsWithoutAColumnInCommonIsRefused) {
   const auto folder = fresh_folder();
   std::string folders;
@@ -292,8 +292,8 @@ json block_on_plane() {
       "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})");
 }
 
-// What lies on a plane does not tell which side is meant, what is behind it does; and a place in millimetres
-// is near to no node of a body in metres.
+// Nodes on a plane do not tell which side is meant, nodes behind it do; and a place in millimeters
+// is near to no node of a body in meters.
 TEST(Warnings, TellOfTheWrongSideAndOfWrongUnits) {
   using Warnings = std::vector<std::string>;
   const auto warnings_of = [](const char* pointer, const char* value) {

@@ -42,7 +42,7 @@ TEST(NamedSets, StandWhereverNodesAreGiven) {
   EXPECT_EQ(scene.output.forces[0].nodes, scene.model->sets().at("grip").nodes);
 }
 
-// Of a part of a face, the facets that lie in it: a surface for pressure and for other bodies.
+// A part of a face has the facets that lie in it: a surface for pressure and for other bodies.
 TEST(NamedSets, KeepTheFacetsThatLieInThem) {
   json scene = cube();
   scene["sets"] = {{"patch", {{"box", {{0.2, 0.2, -1}, {0.8, 0.8, 0.1}}}, {"of", "cube.z_min"}}},

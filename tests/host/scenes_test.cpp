@@ -21,7 +21,7 @@ TEST_P(ShippedScene, ClosesItsBalanceAndNeverGainsEnergyAtInterfaces) {
     ASSERT_GE(now, dissipated);
     dissipated = now;
   }
-  // What bodies lost against obstacles is what the laws stored and dissipated, but for the work of reactions
+  // The bodies lose against obstacles what the laws stored and dissipated, but for the work of reactions
   // on nodes that still move away, which is of the order of the step. A bond that breaks brittly takes
   // nothing.
   const EnergyReport energy = integrator.energy();

@@ -193,7 +193,7 @@ TEST(MotionThatDiverged, IsToldWhereNoNormalCanBeFound) {
   EXPECT_THAT(sphere.reason, HasSubstr("the motion diverged: displacement 1e+160 at node 0, step 1,"));
 }
 
-// What limits the step is in the message: H, area and step, which the law's page puts into a formula. Half
+// The message has the causes of the limit: H, area and step, which the law's page puts into a formula. Half
 // the step that it gives is solved.
 TEST(BondWithSeveralSolutions, IsToldWithWhatLimitsTheStep) {
   const double area = 3.0, mass = 2.0, slope = 0.5;  // from 1 at the opening 1 to 0 at 3
@@ -246,7 +246,7 @@ TEST(StepBeyondTheCriticalOne, IsRefusedOrDivergesWithAMessage) {
   EXPECT_THAT(diverged.reason, HasSubstr("the motion diverged"));
 }
 
-// Of every law that there is, whatever it is called: within the limits that it gives, and all of them
+// Parameters of every law, whatever it is called: within the limits that it gives, and all of them
 // within some draws.
 TEST(RandomParameters, AreWithinTheLimitsOfTheLaw) {
   const LawBook laws({});
@@ -281,7 +281,7 @@ TEST(RandomScene, IsThatOfItsSeed) {
   EXPECT_NE(scene(5), scene(6));
 }
 
-// What a scene has that plain ones have not.
+// Features of a scene that plain scenes lack.
 std::set<std::string> motions_of(const json& scene) {
   const std::string model = scene["model"]["type"].get<std::string>();
   std::set<std::string> found;

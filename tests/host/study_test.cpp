@@ -259,7 +259,7 @@ TEST(Study, ComparesWithARunAsFineAsAsked) {
   EXPECT_NE(errors[0], errors[1]);
 }
 
-// Of a scene with friction they have it, too; one with another law is compared with itself.
+// A scene with friction is compared with several laws; a scene with another law only with itself.
 TEST(Study, TakesLawsThatSuitTheScene) {
   json rubs = shipped("oblique_impact");
   rubs["time"]["end"] = 0.35;  // past the first impact

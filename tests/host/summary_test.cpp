@@ -1,4 +1,4 @@
-// What a run leaves of itself: the summary, and the columns of the history.
+// Results of a run: the summary, and the columns of the history.
 #include "run_result.hpp"
 
 #include "base/stopwatch.hpp"

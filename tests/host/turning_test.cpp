@@ -95,7 +95,7 @@ TEST(TurningObstacle, IsTheSameForContactsThatShareNodes) {
 // A wheel that rolls has no velocity where it touches the ground: what it meets there is not
 // dragged along. It touches at a time of 0.5; met s later, its normal is (-4 s, -1) and its
 // surface, where it touches, has the velocity (16 s^2, 8 s) as it rolls, (2, 0) as it slides, (4,
-// -8 s) as it turns backwards. What rises at 1 sticks to the first, and has its velocity. On the
+// -8 s) as it turns backwards. A node that rises at 1 sticks to the first, and has its velocity. On the
 // others it slides: it is pushed by 1 - 8 s along the normal and by 0.3 of that along x, 0.3 - 6.4
 // s in all. All to the first order; the second is below 18 s^2.
 TEST(TurningObstacle, RollsWithoutSliding) {

@@ -83,7 +83,7 @@ class Grains {
   ilaw_coupled_options options = default_options();
   double dissipated = 0.0, work = 0.0;
   std::uint64_t iterations = 0;
-  // Of the contacts of the last step.
+  // The contacts of the last step.
   std::vector<std::int32_t> body, other;
   std::vector<Vector> normal, arm, other_arm, impulse, moment;
   std::vector<double> gap;

@@ -124,7 +124,7 @@ struct Scene {
     for (const double x : w) twice += x * x / inverse_inertia;
     return 0.5 * twice;
   }
-  // Of the velocities between bodies, at contacts of two.
+  // The largest component of the velocities between bodies, at contacts of two.
   double largest_slip() const {
     double largest = 0.0;
     for (std::size_t k = 0; k < body.size(); ++k)
@@ -155,7 +155,7 @@ struct Scene {
 inline ilaw::interface friction(double mu) {
   return create("coulomb", ILAW_DELASSUS_FULL, {{"friction", mu}});
 }
-// Of spheres whose contacts have moments.
+// The law of spheres whose contacts have moments.
 inline ilaw::interface rolling() {
   return create(
       "rolling", ILAW_DELASSUS_TRANSVERSE_SPIN,

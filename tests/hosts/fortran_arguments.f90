@@ -1,4 +1,4 @@
-! What module ilaw makes of the host's arrays and of the parameters of a law, for fortran_module_test.
+! Conversions in module ilaw of the host's arrays and of a law's parameters, for fortran_module_test.
 module fortran_arguments
   use, intrinsic :: iso_c_binding
   use ilaw

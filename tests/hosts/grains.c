@@ -25,7 +25,7 @@ static double h = 5e-3, side, height;
 static double (*x)[3], (*v)[3], (*w)[3], (*v_previous)[3], (*w_previous)[3];
 static int *cell_head, *cell_next;
 
-/* What a contact leaves for the next step, kept at its first grain. */
+/* Data that a contact leaves for the next step, kept at its first grain. */
 static int32_t (*partner)[PARTNERS];
 static double (*kept_impulse)[PARTNERS][3], *kept_state;
 static size_t state_size;

@@ -1,4 +1,4 @@
-// Who may include whom (docs/architecture.md): what lies lower knows nothing of what stands on it.
+// Rules of inclusion (docs/architecture.md): a lower layer knows nothing of those above it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,8 +15,9 @@ namespace fs = std::filesystem;
 
 // The folders of host_mock from the ground up: each may include itself and those before it.
 const std::vector<std::string> floors = {
-    "host/base",    "host/model",        "host/contact",       "host/step",         "host/scene",
-    "host/results", "instruments/plot", "instruments/study", "instruments/stress", "instruments/bench", "cli"};
+    "host/base",    "host/model",       "host/contact",      "host/step",          "host/scene",
+    "host/results", "instruments/plot", "instruments/study", "instruments/stress", "instruments/bench",
+    "cli"};
 
 std::string first_folder(const std::string& path) { return path.substr(0, path.find('/')); }
 

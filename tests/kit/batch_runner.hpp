@@ -141,7 +141,7 @@ class Arrays {
     normal_.put(nodes.normal);
   }
 
-  // What initialise reads, and where it writes.
+  // The batch that initialise reads and writes.
   ilaw_batch first_batch() {
     ilaw_batch b{};
     b.struct_size = sizeof b;

@@ -1,4 +1,4 @@
-// What create refuses, and in which words: the parameter, its value, what is allowed.
+// Setups that create refuses, and in which words: the parameter, its value, what is allowed.
 #include "support/law_runner.hpp"
 #include "support/small_batch.hpp"
 

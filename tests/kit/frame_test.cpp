@@ -85,7 +85,7 @@ TEST(Frame, MemoryFollowsTheNormalWithoutTangents) {
   expect_frame_indifference(turn(0, 0.7), turn(1, 0.15), false);
 }
 
-// What a law remembers is carried by the shortest rotation from one normal to the next, by any angle up to
+// The memory of a law is carried by the shortest rotation from one normal to the next, by any angle up to
 // the half turn, and by the half turn about the remembered tangent where the normal has become its opposite.
 TEST(Frame, MemoryFollowsTheNormalByAnyAngle) {
   const ilaw::interface law = make_probe(ILAW_FRAME_GLOBAL);

@@ -1,4 +1,4 @@
-// What laws remember of a pair of bodies: it goes on where the two change roles, as the page on the ABI says
+// A law's memory of a pair of bodies goes on where the two change roles, as the page on the ABI says
 // ("Pairs of bodies"), and where the normal turns, by any angle.
 #include "support/law_batch.hpp"
 #include "support/law_cases.hpp"

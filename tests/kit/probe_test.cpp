@@ -1,4 +1,4 @@
-// What no shipped law has all of: tables over fields, amounts, numbers that a batch shares, first states,
+// Probe laws with all features: tables over fields, amounts, numbers that a batch shares, first states,
 // refusals, a solver with a scalar fallback, stable steps. kit_probe.cpp has the equations.
 #include "kit_probe.hpp"
 
@@ -58,7 +58,7 @@ class Probe {
   ilaw_setup setup_{};
 };
 
-// Of pack_probe at rest, where r_N = -c v/(1 + c) for H = 1: the viscosity c that acted on v = -1.
+// The viscosity c of pack_probe that acted on v = -1 at rest, where r_N = -c v/(1 + c) for H = 1.
 class ViscosityOf {
  public:
   explicit ViscosityOf(const ilaw::interface& law)
@@ -313,7 +313,7 @@ TEST(Solver, LeavesABadNodeAlone) {
   }
 }
 
-// Of H alone: the largest entries of all good nodes; with the stiffness per node, the smallest step of all.
+// By H alone, the step is that of the largest entries of good nodes; with a stiffness per node, the least.
 TEST(StableStep, OfHAloneIsTheSmallestOfTheBatch) {
   const double h[] = {0.5, 2.0, 1.0, 4.0, 0.25}, k[] = {1.0, 1.0, 9.0, 1.0, 1.0};
   const ilaw_input given = ilaw::input(k, 1, 1);

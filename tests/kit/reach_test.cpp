@@ -1,4 +1,4 @@
-// What a host may skip: nodes out of reach, by the expression of ilaw.h, to the last bit.
+// Nodes out of reach, which a host may skip by the expression of ilaw.h, to the last bit.
 #include "support/law_cases.hpp"
 #include "support/small_batch.hpp"
 

@@ -1,4 +1,4 @@
-// What threads may do at once: evaluate by one instance, open and close one library. A program of its own, so
+// Concurrent use: evaluate by one instance, open and close one library. A program of its own, so
 // that the thread sanitizer need not build all others.
 #include "batch_runner.hpp"
 #include "kit_probe.hpp"

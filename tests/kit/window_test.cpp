@@ -52,8 +52,8 @@ TEST(Window, NeedsAStateThatDependsOnItsParametersAlone) {
   EXPECT_EQ(window::doubles({1.0, 1}), 13);
 }
 
-// What every step reads stands in front, the ring behind it. Hosts have stored states in this order: who
-// changes it raises the state_version of postit and tie.
+// Values read in every step come first, the ring after them. Hosts have stored states in this order: a change
+// of it must raise the state_version of postit and tie.
 TEST(Window, StandsInAStateInTheOrderOfVersion2) {
   const auto impulse_in = [](double bucket) -> std::vector<double> {
     return {bucket, 2.0 * bucket, -bucket * bucket};

@@ -16,7 +16,7 @@ if grep -r template_law plugins/my_law tests/laws/my_law; then
   exit 1
 fi
 
-# What an earlier run compiled from the same text need not be compiled again, though the folder has another name.
+# Text that an earlier run compiled need not be compiled again, though the folder has another name.
 if command -v ccache >/dev/null; then
   export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$tree
 fi

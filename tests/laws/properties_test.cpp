@@ -1,4 +1,4 @@
-// What every law keeps for each form of H: its conditions and the energy, on half a million random steps
+// Properties of every law for each form of H: its conditions and the energy, on half a million random steps
 // each; the frame, the units and mirror images.
 //
 // A case of the section "properties" names the "statuses" that must occur, and what its law is:

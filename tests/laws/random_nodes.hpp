@@ -20,7 +20,7 @@ struct Units {
   double impulse() const { return mass * velocity(); }
   double energy() const { return impulse() * velocity(); }
 
-  // Of a parameter by its declared unit, say N.s/m^2 or N/m^p; exponents: the values of letters like p.
+  // The unit of a parameter as declared, say N.s/m^2 or N/m^p; exponents: the values of letters like p.
   double of(const std::string& unit, const std::map<std::string, double>& exponents) const {
     const double force = mass * length / (time * time);
     const std::map<std::string, double> known = {{"1", 1.0},

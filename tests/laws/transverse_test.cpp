@@ -135,8 +135,8 @@ const std::vector<LawCase>& laws_without_tangents() {
 INSTANTIATE_TEST_SUITE_P(Laws, TransverseAlongNormals, ::testing::ValuesIn(laws_without_tangents()),
                          name_of_case);
 
-// What is refused as a full matrix is refused in two values, and the other way round; in 1D the second value
-// is not read.
+// An H that is refused as a full matrix is refused as two values, and the other way round; in 1D the second
+// value is not read.
 TEST(TransverseInertia, IsAcceptedWhereItIsPositiveDefinite) {
   const Parameters parameters{{{"friction", 0.3}}, {}};
   const double least = std::numeric_limits<double>::min();

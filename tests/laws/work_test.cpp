@@ -134,7 +134,7 @@ class Work : public ::testing::TestWithParam<Case> {
     }
   }
 
-  // What is wrong with node i; nothing where it keeps its promises.
+  // The violation at node i; none where it keeps its promises.
   std::optional<std::string> judge(const RandomNodes& nodes, const Runner& run, std::size_t i) const {
     const Vector &r = run.r[i], &v = run.v[i], &before = nodes.v_previous[i];
     double work = 0.0, size = 0.0, parts = 0.0;

@@ -56,7 +56,7 @@ class DescriptionFile : public testing::Test {
     return json::parse(content_of(file()));
   }
 
-  // What reading the description, and opening the library, say; empty where they do not refuse it.
+  // Messages of reading the description and of opening the library; empty where they do not refuse it.
   std::string reading() const {
     try {
       ilaw::read_description(library());

@@ -1,4 +1,4 @@
-// What a library says wrong of itself is refused in words that name it, whatever it is.
+// A wrong description of a library is refused in words that name the mistake, whatever it is.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <description.hpp>
 

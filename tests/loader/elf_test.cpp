@@ -61,7 +61,7 @@ std::string answer_to(const Bytes& bytes) {
 
 TEST(ElfFile, WholeOneIsOpened) { EXPECT_EQ(answer_to(whole_library()), "0\nstatus 0\n"); }
 
-// What the loader says of those bytes.
+// The loader's message on those bytes.
 std::string refusal_of(const Bytes& bytes) {
   const std::string path = testing::TempDir() + "ilaw_refused_" + std::to_string(getpid()) + ".so";
   std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -97,7 +97,7 @@ TEST(ElfFile, IsRefusedInItsOwnWords) {
                {"program headers of 57 bytes", [](Bytes& b) { header(b).e_phentsize = 57; }},
                {"truncated at", [](Bytes& b) { header(b).e_phoff = UINT64_MAX - 55; }},
                {"truncated at", [](Bytes& b) { segment(b, PT_LOAD).p_offset = UINT64_MAX - 55; }},
-               // What the loader lets pass, dlopen may not.
+               // dlopen may refuse a file that the loader accepts.
                {"cannot be loaded: ", [](Bytes& b) {
                   const char* const text = "libc.so.6";
                   *std::search(b.begin(), b.end(), text, text + 9) = 'q';

@@ -1,4 +1,4 @@
-// What the loader finds, refuses and keeps loaded.
+// Libraries that the loader finds, refuses and keeps loaded.
 #include <ilaw/loader.hpp>
 
 #include "support/matchers.hpp"

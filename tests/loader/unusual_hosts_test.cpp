@@ -10,7 +10,7 @@ namespace {
 
 using namespace ilaw::testing::programs;
 
-// What the host prints, and how it ended where not well.
+// The output of the host, and its exit status where it failed.
 std::string digest_of(const std::string& host, const std::string& mode) {
   std::string command = std::string(ILAW_HOSTS) + "/" + host + " " + mode;
   std::istringstream laws(ILAW_ALL_LAWS);

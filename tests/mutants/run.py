@@ -183,7 +183,7 @@ def caught(mutant, near, usual):
 
 
 def table(counts):
-    """Of the mutants and the caught ones of each area."""
+    """Rows with the mutants and the caught ones of each area."""
     whole = [sum(column) for column in zip(*counts.values())]
     rows = [f"| {area} | {mutants} | {found} |" for area, (mutants, found) in [*sorted(counts.items()), ("all", whole)]]
     return "\n".join(["| area | mutants | caught |", "| --- | --- | --- |", *rows])

@@ -70,7 +70,7 @@ inline std::vector<std::string> laws_of_tree() {
   return laws;
 }
 
-// What a law brings for a section; empty where it brings nothing.
+// A law's cases for a section; empty where it has none.
 inline json section_of(const std::string& law, const std::string& section) {
   std::ifstream file(tree_of_laws() / "tests/laws" / law / "cases.json");
   return file ? json::parse(file).value(section, json::array()) : json::array();

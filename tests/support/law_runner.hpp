@@ -25,7 +25,7 @@
 
 namespace ilaw::testing {
 
-// Of this build, or of the build of a copy of the tree that is tested (see law_cases.hpp).
+// The library of this build, or of the build of a copy of the tree under test (see law_cases.hpp).
 inline std::string plugin_file(const std::string& law) {
   if (const char* folder = std::getenv("ILAW_TEST_PLUGINS")) {
     const std::string file = std::string(folder) + "/" + law + ".so";

@@ -25,7 +25,7 @@ inline Vector moved(NodeRun node, Vector v, double end) {
 
 inline double distance(const Vector& a, const Vector& b) { return length(a - b); }
 
-// make(step, alone): the node, in packs or solved alone. Of the first order: the velocity that is given
+// make(step, alone): the node, in packs or solved alone. The order is one: the velocity that is given
 // counts half a step early. spread: by how much the errors over the step differ.
 template <class Make>
 void expect_first_order(Make make, const Vector& v, double spread) {

@@ -84,7 +84,7 @@ typedef uint32_t ilaw_variable_flags;  /* mask of ILAW_VARIABLE_* */
 
 /* ---- enumerations ------------------------------------------------------------------------------- */
 
-/* What a function returns. Negative: nothing was done, and the message says why. */
+/* Codes that functions return. Negative: nothing was done, and the message says why. */
 enum {
   ILAW_OK = 0,
   ILAW_BAD_NODES = 1,          /* evaluate: some nodes had bad input, see ilaw_report; the others are done */
@@ -140,7 +140,7 @@ enum {
 /* Optional arrays that a law can write, a bit mask. The impulse and the state are always written. */
 enum { ILAW_OUTPUT_VELOCITY = 1 << 0, ILAW_OUTPUT_STATUS = 1 << 1, ILAW_OUTPUT_ENERGY = 1 << 2 };
 
-/* What more a law can do, a bit mask. */
+/* Further abilities of a law, a bit mask. */
 enum {
   ILAW_CAN_ADHERE = 1 << 0,       /* r_N may be negative */
   ILAW_CAN_STORE_ENERGY = 1 << 1, /* the stored part of the energy may be other than zero */

@@ -18,8 +18,8 @@
  * created from it is destroyed. Objects may outlive main: nothing of the loader ends before them.
  * Errors: functions return an ILAW_* code of ilaw.h; message (message_size bytes, may be null when 0)
  * receives one line: which file, what was found, what was expected. No function throws or prints.
- * Versions: hosts and libraries of other minor versions work together. What ilaw_library_plugin,
- * ilaw_library_law, ilaw_interface_law and ilaw_interface_info give is a checked copy, with zeros where the
+ * Versions: hosts and libraries of other minor versions work together. The results of ilaw_library_plugin,
+ * ilaw_library_law, ilaw_interface_law and ilaw_interface_info are checked copies, with zeros where the
  * library had no member yet, of at least the size that the loader was built with.
  *
  * SPDX-License-Identifier: BSD-3-Clause

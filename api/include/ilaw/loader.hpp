@@ -78,7 +78,7 @@ class parameters {
     double number = 0.0;
     std::vector<double> values;
     std::vector<axis> axes;
-    // What points into the members above.
+    // These structs point into the members above.
     ilaw_argument argument{};
     std::vector<ilaw_axis> axis_structs;
     std::vector<const ilaw_axis*> axis_pointers;

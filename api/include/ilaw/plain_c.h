@@ -122,7 +122,7 @@ static inline void ilaw_put(const ilaw_output* a, int64_t node, int64_t c, doubl
 static inline int64_t ilaw_node_of(const ilaw_batch* b, int64_t k) {
   return b->index ? (int64_t)b->index[k] - b->index_base : b->index64 ? b->index64[k] - b->index_base : k;
 }
-/* What is wrong with the pointers of an array. */
+/* Checks the pointers of an array: the mistake, or null. */
 static inline const char* ilaw_plain_wrong_array(const ilaw_instance* own, const void* values,
                                                  const void* floats, int required) {
   if (!values && !floats) return required ? "an array is missing" : NULL;

@@ -41,7 +41,7 @@ inline constexpr std::uint32_t least<ilaw_plugin> = ILAW_PLUGIN_SIZE_1_0;
 // No struct of any version is larger; a larger struct_size was never written.
 inline constexpr std::uint32_t most = 4096;
 
-// What a struct says of its size; 0 where there is none.
+// The size that a struct states in its first member; 0 for a null pointer.
 template <class Struct>
 std::uint32_t size_of(const Struct* given) {
   std::uint32_t size = 0;
@@ -69,7 +69,7 @@ inline void copy(void* to, std::size_t room, const void* from, std::size_t writt
   std::memset(static_cast<char*>(to) + common, 0, room - common);
 }
 
-// What a writer of any minor version filled, as the struct of this one.
+// A struct that a writer of any minor version filled, as the struct of this one.
 template <class Struct>
 Struct read(const Struct* given) {
   Struct known;

@@ -86,7 +86,7 @@ def study(arguments, model, name, young=SOFT):
 
 
 def cheapest(results, bound):
-    """Of those whose errors are both within the bound."""
+    """The fastest result of those whose errors are both within the bound."""
     good = [result for result in results if result.energy <= bound and result.contacts <= bound]
     return min(good, key=lambda result: result.seconds, default=None)
 

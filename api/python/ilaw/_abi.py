@@ -28,7 +28,7 @@ class Flags(IntFlag):
 
 
 class Code(IntEnum):
-    """What a function returns."""
+    """Codes that functions return."""
 
     OK = 0
     BAD_NODES = 1
@@ -83,7 +83,7 @@ class Output(Flags):
 
 
 class Capability(Flags):
-    """What more a law can do."""
+    """Further abilities of a law."""
 
     ADHERE = 1
     STORE_ENERGY = 2

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a contact takes of memory: yade -n -x memory.py ilaw|own COUNT. COUNT**3 spheres that touch, one step."""
+"""Memory that a contact takes: yade -n -x memory.py ilaw|own COUNT. COUNT**3 spheres that touch, one step."""
 import resource
 import sys
 

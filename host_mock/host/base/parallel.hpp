@@ -1,4 +1,4 @@
-// parallel.hpp - loops over many items in chunks, which threads share. What a chunk is does not
+// parallel.hpp - loops over many items in chunks, which threads share. The chunks do not
 // depend on the number of threads, so that sums by chunks do not either.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once

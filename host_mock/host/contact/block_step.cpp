@@ -32,7 +32,7 @@ class BlockWalk {
         moves_(obstacle_ != Components{}),
         moved_(obstacle_before_ != Components{}),
         stands_still_(!Turns && !moves_ && !moved_) {
-    // What a law does not give is what it was.
+    // A law without this output leaves the contacts free.
     if (!(step.law.outputs() & ILAW_OUTPUT_STATUS)) status_room_.fill(ILAW_FREE);
   }
 
@@ -97,7 +97,7 @@ class BlockWalk {
       for (int c = 0; c < D; ++c) normal_[c * block_size + normals_] = step_.obstacle.flat()->normal[c];
   }
 
-  // Of the surface where it is touched: a gap offset is a body's own.
+  // Velocities of the surface where it is touched: a gap offset is a body's own.
   void find_turns() {
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       const RigidSurface there{gap_[i], Eigen::Map<const Vector>(&normal_[D * i], D)};
@@ -385,7 +385,7 @@ class BlockWalk {
   std::ptrdiff_t count_ = 0;
   bool contacts_in_row_ = false, nodes_in_row_ = false;
   std::ptrdiff_t normals_ = 0;  // nodes whose normal is already that of the plane
-  // What this block works on: in the host's arrays or the rooms below.
+  // The arrays of this block: in the host's arrays or the rooms below.
   double *delassus_ = nullptr, *impulse_ = nullptr;
   std::uint8_t* status_ = nullptr;
   Column gap_, delassus_room_, area_room_;

@@ -30,7 +30,7 @@ struct BlockStep {
   ContactHeat* heat;  // null: no temperatures
 };
 
-// What became of the contacts of a chunk.
+// The result of the contacts of a chunk.
 struct ChunkOutcome {
   ContactSums sums;
   Refusal refusal;

@@ -33,7 +33,7 @@ class ContactArrays {
   // partnered: the counterpart has partners.
   ContactArrays(int dimension, const ilaw_instance_info& info, std::size_t node_count, bool partnered);
 
-  // What a new contact starts with.
+  // The values with which a new contact starts.
   struct Entry {
     int node_index;
     double delassus, area;
@@ -44,7 +44,7 @@ class ContactArrays {
   };
 
   std::size_t count() const { return node_index.size(); }
-  // Of the node at node_index; -1: none yet.
+  // The contact of the node at node_index; -1: none yet.
   int index_of(std::size_t node) const { return contact_index_[node]; }
   void add(const Entry& entry);
 
@@ -83,7 +83,7 @@ class ContactArrays {
   std::size_t bytes_per_contact() const;
   // Contacts whose state may differ from what it started as.
   void save(std::ostream& out) const;
-  // What save wrote, into the entries that were added for the same nodes in the same order.
+  // Restores the output of save into the entries that were added for the same nodes in the same order.
   static std::vector<int> load_nodes(std::istream& in, std::size_t most);
   void load_state(std::istream& in);
 

@@ -50,7 +50,7 @@ struct ContactSums {
     for (std::size_t k = 0; k < ILAW_ENERGY_STORED; ++k)
       least_dissipation = parts[k] < least_dissipation ? parts[k] : least_dissipation;
   }
-  // Of one part that is dissipated, for some contacts. Most often all are zero, and none has a sign:
+  // Adds one part that is dissipated, for some contacts. Most often all are zero, and none has a sign:
   // neither then changes a sum or the least, and seeing it takes no chain of additions.
   void add_dissipation(std::size_t part, const double* values, std::ptrdiff_t count) {
     constexpr std::ptrdiff_t block = 16;
@@ -58,7 +58,7 @@ struct ContactSums {
     std::uint64_t bits = 0;
     for (std::ptrdiff_t first = 0; first < count; first += block) {
       const std::ptrdiff_t end = std::min(count, first + block);
-      // Of so many that the compiler knows the number: no loop.
+      // The compiler knows the size of a full block: no loop.
       const std::uint64_t these =
           end - first == block ? bits_of(values + first, block) : bits_of(values + first, end - first);
       bits |= these;

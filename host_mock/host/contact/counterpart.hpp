@@ -99,7 +99,7 @@ class Counterpart {
  public:
   virtual ~Counterpart() = default;
 
-  // Of the node at node_index in the interface's list.
+  // The contact point of the node at node_index in the interface's list.
   virtual ContactPoint contact_point(int node_index, const Dofs& u, double time) const = 0;
   // The same of count nodes at once, where the counterpart is rigid.
   virtual void locate(const std::int32_t* node_indices, std::ptrdiff_t count, const Dofs& u, double time,

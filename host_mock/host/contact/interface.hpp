@@ -95,7 +95,7 @@ class Interface {
   // Whether a node has no gap or no normal: so far out lengths overflow, and edges of facets vanish.
   bool has_lost_a_node(const Dofs& u, double time) const;
   int contact_index_of(int node_index, const Dofs& u);  // makes a contact where there is none
-  // -1: none yet. Who looks on makes none: contacts then have the order of their nodes, which blocks need to
+  // -1: none yet. Watching makes none: contacts then have the order of their nodes, which blocks need to
   // work on them where they are.
   int contact_at(int node_index) const { return contacts_.index_of(at(node_index)); }
   // The accepted state, without making a contact.

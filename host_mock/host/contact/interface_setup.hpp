@@ -15,7 +15,7 @@
 
 namespace ilaw::host {
 
-// Of an interface whose nodes and partners have temperatures.
+// Setup of an interface whose nodes and partners have temperatures.
 struct HeatSetup {
   std::optional<Table> obstacle_temperature;
 };

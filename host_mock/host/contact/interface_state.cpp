@@ -1,4 +1,4 @@
-// What contacts start with where no step has reached them, and what a checkpoint brings back.
+// State of contacts that no step has reached, and the state that a checkpoint restores.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/bytes.hpp"
 #include "base/running_law.hpp"

@@ -1,5 +1,5 @@
-// law_faults.hpp - what a law answers with the code ILAW_OK, but cannot be. What goes into sums
-// shows in them, at no cost per contact; the contact is sought once something is wrong.
+// law_faults.hpp - impossible results that a law returns with the code ILAW_OK. Faults of summed values
+// show in the sums, at no cost per contact; the contact is sought once something is wrong.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -17,11 +17,11 @@ namespace ilaw::host {
 // Whether one of the contacts added up may have such an answer.
 bool show_fault(const ContactSums& sums);
 
-// What is wrong with the answer for a contact; null where nothing is. The text stays until the
+// The error in the answer for a contact; null where there is none. The text stays until the
 // thread's next call. energy has ILAW_ENERGY_COUNT values.
 const char* fault_of(const double* impulse, int dimension, const double* energy, int status);
 
-// Of a law that wrote to the named input.
+// The refusal of a law that wrote to the named input.
 Refusal overwriting(const char* input);
 
 // Inputs of a batch as they were, to see whether a law writes to them.

@@ -10,7 +10,7 @@
 
 namespace ilaw::host {
 
-// What a law answered: its code and report.
+// Code and report that a law returned.
 struct Answer {
   std::int32_t code;
   ilaw_report report;

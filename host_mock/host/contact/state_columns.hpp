@@ -17,7 +17,7 @@ class StateColumns {
   bool empty() const { return numbers_ == 0; }
   double& at(std::size_t contact, std::size_t number) { return values_[number * room_ + contact]; }
   double at(std::size_t contact, std::size_t number) const { return values_[number * room_ + contact]; }
-  // What a batch takes: the first number of a contact, and what lies between it and the next one.
+  // Layout for a batch: the first number of a contact, and the stride to its next number.
   double* first(std::size_t contact) { return empty() ? nullptr : &values_[contact]; }
   std::int64_t stride() const { return static_cast<std::int64_t>(room_); }
 

@@ -128,8 +128,8 @@ StrainMatrix strain_matrix(const Gradients& gradients) {
   return b;
 }
 
-// Of all integration points; with mean dilatation each point's is replaced by the mean (B-bar, Hughes
-// 1980).
+// B at all integration points; with mean dilatation the dilatational part of each is the mean (B-bar,
+// Hughes 1980).
 std::array<StrainMatrix, 8> strain_matrices(const std::array<Gradients, 8>& gradients, Element element) {
   using Row = Eigen::Matrix<double, 1, 24>;
   std::array<StrainMatrix, 8> matrices;

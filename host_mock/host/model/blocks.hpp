@@ -47,7 +47,7 @@ class Blocks : public Model {
   using ElementMatrix = Eigen::Matrix<double, 24, 24>;
   using Gradients = Eigen::Matrix<double, 3, 8>;  // of the shape functions at an integration point
 
-  // Of an element with mean dilatation: F at the integration points, det F, and s of material.hpp.
+  // State of an element with mean dilatation: F at the integration points, det F, and s of material.hpp.
   struct Deformation {
     std::array<Eigen::Matrix3d, 8> gradients;
     std::array<double, 8> volumes, scales;

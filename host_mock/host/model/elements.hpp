@@ -18,7 +18,7 @@ struct CornerQuality {
 };
 CornerQuality worst_corner(const Eigen::Vector3d* corners, int count);
 
-// Of the undeformed mesh; infinite without one.
+// The shortest edge of the undeformed mesh; infinite without a mesh.
 double shortest_edge(const Model& model);
 
 // Elements that are turned inside out at the displacements u, by number.
@@ -31,8 +31,8 @@ struct InvertedElement {
 };
 InvertedElement first_inverted(const Model& model, const Dofs& u);
 
-// What a motion that diverged with a step tells of its cause and of the cure: the beginning of a
-// sentence is there already.
+// Cause and cure of a motion that diverged with a step, as the end of a sentence: its beginning is
+// there already.
 std::string advice_on_divergence(const Model& model, const Dofs& u, double dt);
 
 }  // namespace ilaw::host

@@ -21,7 +21,7 @@ struct StepTimes {
   double duration() const { return after - before; }
 };
 
-// Of all nodes: displacements at the end of the step, and velocities before it.
+// Motions of all nodes: displacements at the end of the step, and velocities before it.
 struct Motions {
   const Dofs &u, &v;
 };

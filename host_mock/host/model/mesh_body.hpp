@@ -29,7 +29,7 @@ struct SolidElement {
 using Hexahedron = SolidElement<8, 8>;
 using Tetrahedron = SolidElement<4, 1>;
 
-// Of nodes in VTK's order. Throws MeshError where an element is inverted.
+// The element of nodes in VTK's order. Throws MeshError where it is inverted.
 Hexahedron hexahedron_of(const std::array<int, 8>& nodes, const Dofs& position);
 Tetrahedron tetrahedron_of(const std::array<int, 4>& nodes, const Dofs& position);
 

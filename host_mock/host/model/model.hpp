@@ -27,7 +27,7 @@ struct NodeSet {
                                            // last node twice in a triangle
 };
 
-// What all models have in common, filled by their constructors.
+// Data that all models have in common, filled by their constructors.
 struct Nodes {
   int dimension = 0;
   Dofs mass, position, velocity;  // mass lumped, per degree of freedom, > 0; position of the undeformed body

@@ -59,7 +59,7 @@ class Turning {
   Vector at_angle(const Vector& direction, double angle) const;
   // A direction in space, as it turns between two times.
   Vector turned(const Vector& direction, double from, double to) const;
-  // Of what is there, seen from the axis; in 2D the axis is across the plane.
+  // Velocities at rate 1 of a point at `arm` from the axis; in 2D the axis is across the plane.
   SurfaceTurn unit_velocity(const Vector& arm) const;
 
  private:
@@ -104,7 +104,7 @@ class Obstacle {
   double tilting_speed(const Vector& x, double from, double to) const;
   // A direction in space, as it turns between two times; the same where nothing turns, or for a disc in 2D.
   Vector turned(const Vector& direction, double from, double to) const;
-  // Of its surface, at the place with that gap and normal.
+  // Velocities at rate 1 of the surface, at the place with that gap and normal.
   SurfaceTurn unit_velocity(const Vector& x, const RigidSurface& there, double time) const;
   // Whether the normal is the same everywhere.
   virtual bool is_flat() const { return false; }

@@ -62,8 +62,8 @@ double largest_eigenvalue(const Model& model, const std::vector<Spring>& springs
   return largest;
 }
 
-// Of central difference with dampers at the velocity before: h^2 k + 2 h c <= 4 for all motions, k and
-// c their stiffness and damping over mass (Jury's conditions).
+// Critical step of central difference with dampers at the velocity before: h^2 k + 2 h c <= 4 for all
+// motions, k and c their stiffness and damping over mass (Jury's conditions).
 double critical_step_of(const Model& body, const std::vector<Spring>& springs) {
   const double own = 2.0 / body.critical_step();
   const double k = own * own + largest_eigenvalue(body, springs, &Spring::stiffness);

@@ -21,7 +21,7 @@ struct Spring {
   double stiffness, damping, length;  // length without load
 };
 
-// What a spring and its damper do to its node, along the line to the other end.
+// Force of a spring and its damper on its node, along the line to the other end.
 Vector pull_of(const Model& model, const Spring& spring, Motions at);
 
 // A model and what was put between its nodes.

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-// What must be the same for a checkpoint to fit: the scene, and the laws as they were loaded.
+// Identity that must be the same for a checkpoint to fit: the scene, and the laws as they were loaded.
 json identity_of(const Scene& scene) {
   json laws = json::array();
   for (const auto& interface : scene.interfaces)
@@ -49,7 +49,7 @@ FileMark mark_of(const json& mark) {
   return {mark.at("size").get<std::uintmax_t>(), mark.at("checksum").get<std::uint32_t>()};
 }
 
-// What write_checkpoint put into the file; throws where that is not what it finds.
+// The content that write_checkpoint put into the file; throws where the file has anything else.
 json content_of(const std::string& file) {
   const json sealed = json::from_cbor(file);
   const Bytes& bytes = sealed.at("content").get_binary();
@@ -58,7 +58,7 @@ json content_of(const std::string& file) {
   return json::from_cbor(bytes);
 }
 
-// What the steps of a scene follow from: not where they end, what is written of them and who reads it.
+// The part of a scene that determines its steps, without their end and the keys of output and reading.
 json cause_of(json scene) {
   for (const char* key : {"title", "doc", "output", "exact", "converge", "study"}) scene.erase(key);
   scene.at("time").erase("end");
@@ -178,7 +178,7 @@ void write_checkpoint(const Scene& scene, const Integrator& integrator, const Ch
   file.commit();
 }
 
-// What was damaged gives its place to the one before it: the next checkpoint must not push that out.
+// A damaged checkpoint is replaced by the one before it: the next one must not push that out.
 Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
                            std::string& said) {
   const std::filesystem::path path = folder / newest, older = folder / previous;

@@ -33,7 +33,7 @@ void write_checkpoint(const Scene& scene, const Integrator& integrator, const Ch
 Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
                            std::string& said);
 
-// Those of an earlier run, from which a new one cannot go on.
+// Removes the checkpoints of an earlier run, from which a new one cannot go on.
 void clear_checkpoints(const std::filesystem::path& folder);
 
 }  // namespace ilaw::host

@@ -207,7 +207,7 @@ void Fields::write(const Integrator& integrator) {
   write_series();
 }
 
-// What interfaces hold means nothing there.
+// Values of interfaces mean nothing after a divergence and are left out.
 std::filesystem::path Fields::write_diverged(const Integrator& integrator) const {
   vtkNew<vtkUnstructuredGrid> grid;
   add_body(*grid, integrator);

@@ -32,7 +32,7 @@ class Forces {
   // Per name the impulse of the whole run, and the largest size of the force at the start or in a row.
   nlohmann::json summary() const;
 
-  // What has been added up: the checkpoint takes it along.
+  // The sums so far: the checkpoint takes them along.
   void save(std::ostream& out) const;
   void load(std::istream& in);
 

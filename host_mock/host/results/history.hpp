@@ -35,7 +35,7 @@ class History {
   void keep_rows() { file_.keep_lines(); }
 
   const Forces& forces() const { return forces_; }
-  // What the next row depends on beside the integrator.
+  // The state beside the integrator on which the next row depends.
   void save(std::ostream& out) const { forces_.save(out); }
   void load(std::istream& in) { forces_.load(in); }
 

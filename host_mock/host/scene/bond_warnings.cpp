@@ -1,4 +1,4 @@
-// Bonds that nothing in the scene can break: a wrong unit, often. What acts is bounded from above, by
+// Bonds that nothing in the scene can break: a wrong unit, often. The drive of a scene is bounded above, by
 // all loads and momenta together on the weakest node; the factor leaves room for waves. And bonds whose
 // memory is too short for the step.
 // SPDX-License-Identifier: BSD-3-Clause
@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-// What acts in a scene at most: a force, and impulses besides.
+// Upper bounds of the loads of a scene: a force, and impulses besides.
 struct Drive {
   double force = 0.0, impulse = 0.0;
 };

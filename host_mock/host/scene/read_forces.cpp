@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-// What a name may mean.
+// The objects that a name may mean.
 class Named {
  public:
   explicit Named(const Scene& scene) : scene_(scene) {

@@ -144,7 +144,7 @@ std::string key_of(const ParameterError& error, const json& interface) {
   return interface.contains("pairs") && !name.empty() && !is_given ? "/pairs" : "/parameters" + below;
 }
 
-// What the loader or the law refuses, at the key that it is about.
+// Reports an error of the loader or the law at the key that it is about.
 [[noreturn]] void refuse_law(const ilaw::error& error, const json& interface, const std::string& pointer) {
   const std::string library = pointer + (interface.contains("library") ? "/library" : "/law");
   if (error.code() == ILAW_BAD_LIBRARY) throw SceneError(library, error.what());

@@ -76,11 +76,11 @@ class BodyNames {
   std::set<std::string> seen_;
 };
 
-// What a run needs at least: positions, displacements, velocities, masses and impulses, and the
+// Least memory of a run: positions, displacements, velocities, masses and impulses, and the
 // nodes of the elements.
 constexpr double bytes_per_node(int dimension) { return dimension == 1 ? 72.0 : 12.0 * 24.0; }
 
-// Of the machine, or less where the process may not have it all.
+// Memory of the machine, or the limit of the process where that is less.
 double bytes_of_memory() {
   rlimit limit{};
   const double all =
@@ -104,7 +104,7 @@ void check_nodes(double nodes, const json& body, const std::string& pointer) {
                 body["elements"].dump() + formatted(", which makes %.10g nodes", nodes), "at most 5e8");
 }
 
-// Of the ends of a bar, which must stay where they are to each other.
+// Displacements of the ends of a bar, which must keep their order.
 std::array<double, 2> read_end_displacements(const json& bar, const std::string& pointer) {
   if (!bar.contains("initial_displacement")) return {0.0, 0.0};
   const json& found = bar["initial_displacement"];

@@ -78,7 +78,7 @@ std::string value_in_words(const json& part) {
   return part.value("type", std::string("a value")) + limits;
 }
 
-// What the schema allows for a value, in words.
+// The values that the schema allows, in words.
 std::string allowed(const json& part) {
   if (part.contains("anyOf")) {
     std::string text;
@@ -198,8 +198,8 @@ void refuse(const Mistakes& mistakes) {
   throw SceneError(text);
 }
 
-// Parts that come in types have a schema per type. What the schema of the whole refused is left
-// out.
+// Parts that come in types have a schema per type. Parts that the schema of the whole refused
+// are left out.
 void validate_typed(const json& value, const std::string& kind, const std::string& pointer,
                     Mistakes& mistakes) {
   if (!value.is_object() || !value.contains("type") || !value["type"].is_string()) return;

@@ -17,7 +17,7 @@ void check_components(int count, int dimension, const std::string& pointer);
 
 // A vector of the model's dimension.
 Vector read_vector(const nlohmann::json& value, int dimension, const std::string& pointer);
-// Of a key that may be left out.
+// A vector whose key may be left out; then it is zero.
 Vector read_vector_or_zero(const nlohmann::json& object, const char* key, int dimension,
                            const std::string& pointer);
 // Any vector but zero.

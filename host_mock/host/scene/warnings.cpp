@@ -18,7 +18,7 @@ using nlohmann::json;
 
 namespace {
 
-// What a step of a small scene costs at least, and each node of a larger one.
+// Least time of a step of a small scene, and of each node of a larger one.
 constexpr double seconds_per_step = 2e-7, seconds_per_node = 1e-8;
 
 void warn_of_duration(Scene& scene) {

@@ -16,7 +16,7 @@
 
 namespace ilaw::host {
 
-// What happened so far.
+// Counts and extremes so far.
 struct Tally {
   std::int64_t active = 0, skipped = 0;  // node-steps
   std::int64_t sweeps = 0;               // over all steps
@@ -62,7 +62,7 @@ class Accounts {
   // Time of the first step in which a contact of an interface was not free; infinite: none yet.
   double first_contact(std::size_t interface) const { return first_contact_[interface]; }
   std::string step_warning(double dt) const;
-  // What a reader of the results must know.
+  // Warnings for readers of the results.
   std::vector<std::string> warnings(std::int64_t steps, double dt, const EnergyReport& energy) const;
 
   void save(std::ostream& out) const;

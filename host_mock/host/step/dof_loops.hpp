@@ -23,7 +23,7 @@ void for_each_part(Eigen::Index count, F f) {
                  [&](std::ptrdiff_t, std::ptrdiff_t first, std::ptrdiff_t end) { f(first, end); });
 }
 
-// What f returns for each part, put together by join.
+// The results of f for all parts, combined by join.
 template <class F, class Join>
 auto over_parts(Eigen::Index count, F f, Join join) {
   if (count <= dof_chunk) return f(Eigen::Index{0}, count);
@@ -59,7 +59,7 @@ inline double largest_square(const Dofs& v, Eigen::Index d, Eigen::Index first, 
   return d == 2 ? largest_square<2>(v.data(), first, end) : largest_square<3>(v.data(), first, end);
 }
 
-// Of the nodes, which have d components each.
+// The largest speed of the nodes, which have d components each.
 inline double largest_speed(const Dofs& v, Eigen::Index d) {
   return std::sqrt(largest_of_parts(
       v.size(), [&](Eigen::Index first, Eigen::Index end) { return largest_square(v, d, first, end); }));

@@ -41,7 +41,7 @@ class EnergyBalance {
   // Work of an interface on the bodies: in all, and relative to moving obstacles, to compare with
   // what the laws dissipated.
   void add_interface(double work, double relative_work);
-  // What the laws of an interface dissipated in a step, and the least of a node.
+  // The energy that the laws of an interface dissipated in a step, and the least of a node.
   void add_dissipation(const std::array<double, ILAW_ENERGY_COUNT>& energy, double least);
   double largest() const { return sums_.largest; }  // of energies and works so far
   // An upper bound of the energy that was put in: what there was at the start, what loads and moving

@@ -25,7 +25,7 @@ void leave_driven_undamped(const Loads& loads, Eigen::Index d, const Dofs& undam
       }
 }
 
-// What of it tells best that it diverged, and its name.
+// The vector that shows the divergence best, and its name.
 struct WildMotion {
   const char* name;
   const Dofs& wild;
@@ -86,7 +86,7 @@ void Integrator::step() {
   check_energy();
 }
 
-// What is told of a run that failed is of its last whole step.
+// A failed run reports its last complete step.
 void Integrator::take_back_step() {
   if (!has_begun_step_) return;
   v_ = v_before_;
@@ -126,7 +126,7 @@ double Integrator::move_and_kick() {
   }));
 }
 
-// As impulses: shocks have no force. What no load changes is summed once.
+// As impulses: shocks have no force. Impulses that no load changes are summed once.
 void Integrator::sum_forces(StepTimes step) {
   if (!loads_are_steady_) {
     const auto each = [&](auto change) {

@@ -78,7 +78,7 @@ class Integrator {
   double first_contact(std::size_t interface) const { return accounts_.first_contact(interface); }
   // Where a law asked for a smaller step; empty where none did.
   std::string step_warning() const { return accounts_.step_warning(dt_); }
-  // What a reader of the results must know.
+  // Warnings for readers of the results.
   std::vector<std::string> warnings() const { return accounts_.warnings(steps_, dt_, energy()); }
 
   // Everything that the next step depends on; a run that goes on from it gives the same bits.

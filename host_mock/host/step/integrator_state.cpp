@@ -1,4 +1,4 @@
-// What surrounds the steps: how a run starts, what is read of it, and where it can go on from.
+// Start of a run, its results for readers, and the state from which it can go on.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/bytes.hpp"
 #include "base/large_pages.hpp"
@@ -12,7 +12,7 @@ namespace ilaw::host {
 
 namespace {
 
-// What leaves driven nodes alone comes first, for it takes back what was done to them. Prescribed
+// Loads that leave driven nodes alone come first, as they undo changes of these nodes. Prescribed
 // motions have the last word, so that positions follow them whatever else acts.
 std::vector<std::size_t> order_of_corrections(const Loads& loads) {
   const auto rank = [](const Load& load) {

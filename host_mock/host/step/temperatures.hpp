@@ -35,7 +35,7 @@ class Temperatures {
   void conduct(StepTimes step);
   void take(const Interfaces& interfaces);
 
-  // Of a node that has one, at the half step after time().
+  // The temperature of a node that has one, at the half step after time().
   double at(int node) const { return model_.initial_temperature()[node] + rise_[node]; }
   bool all_finite() const { return rise_.allFinite(); }
   HeatReport report() const;

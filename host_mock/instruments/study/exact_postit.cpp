@@ -135,8 +135,8 @@ class Story {
     if (adhesion_ == 0.0) take_off();
   }
 
-  // Up to the next kink the sum is quadratic: it passes the adhesion on its way to its top. What leaves
-  // the window at a kink counts before it and not after.
+  // Up to the next kink the sum is quadratic: it passes the adhesion on its way to its top. An impulse that
+  // leaves the window at a kink counts before it and not after.
   double rupture_before(double until) const {
     const auto excess = [&](double time) { return pulled(time) - adhesion_ * at_the_limit; };
     const double margin = 1e-12 * (until - now_);

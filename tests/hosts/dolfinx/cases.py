@@ -36,7 +36,7 @@ def unstructured(out):
 
 
 def gathered(throw):
-    """Of all ranks on the first one: x, u, v of nodes, and at the plane impulse, status and adhesion."""
+    """Data of all ranks on the first: x, u, v of nodes, and at the plane impulse, status and adhesion."""
     block, at = throw.block, throw.nodes
     status, impulse = np.full(block.owned, -1.0), np.zeros((block.owned, 3))
     status[at], impulse[at] = throw.contact.status, throw.contact.impulse

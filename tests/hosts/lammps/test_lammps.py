@@ -61,7 +61,7 @@ def command(tmp_path, text):
 
 
 def lammps(tmp_path, text, ranks=1):
-    """What a script prints; raises with it where LAMMPS refuses."""
+    """The output of a script; raises with it where LAMMPS refuses."""
     launcher = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
     done = subprocess.run(launcher + command(tmp_path, text), cwd=tmp_path, env=ENVIRONMENT, text=True, timeout=300,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)

@@ -1,4 +1,4 @@
-"""What users install: from the tree and from the source archive, into an environment of its own."""
+"""Installed packages: from the tree and from the source archive, into an environment of its own."""
 import os
 import re
 import shutil

@@ -192,7 +192,7 @@ def goes_on_with_moments():
 
 
 def refused():
-    """What is not served, with the reason."""
+    """The cases that are not served, with the reason."""
     said = []
     for change in ("damping", "facet", "blocked", "tumbling"):
         scene("contact", [((0, 0, 0.6), 0.5, (0, 0, -1))])

@@ -14,7 +14,7 @@ YADE = Path(os.environ["ILAW_SOURCE"]) / "api/yade"
 
 
 def yade(folder, *command):
-    """What a script prints. Yade ends with 0 whatever a script raises, so that is looked for."""
+    """The output of a script. Yade ends with 0 whatever a script raises, so that is looked for."""
     done = subprocess.run(["yade", "-n", "-x", *map(str, command)], cwd=folder, text=True, timeout=300,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)  # fmt: skip
     assert done.returncode == 0 and "Traceback" not in done.stdout, done.stdout[-3000:]

@@ -4,7 +4,7 @@
 
 using namespace ilaw::kit;
 
-// What all of them have, in three parts.
+// The part that all laws have, in three macros.
 #define CARD                                                                                         \
   static constexpr law_card card{                                                                    \
       .id = "wrong", .title = "A law", .doc = "A mistake.", .delassus_forms = ILAW_DELASSUS_SCALAR}; \

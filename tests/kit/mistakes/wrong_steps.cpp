@@ -6,7 +6,7 @@
 
 using namespace ilaw::kit;
 
-// What all of them have.
+// The part that all laws have.
 #define WRONG(law)                                                                                                   \
   template <class V>                                                                                                 \
   struct law {                                                                                                       \

@@ -196,7 +196,7 @@ struct Problem {
   Vector opening, position, v_previous, v_free;
 };
 
-// What is wrong with a solution; contact: whether it was pressed.
+// The violation in a solution, if any; pressed: whether there was contact.
 inline std::optional<std::string> judge(const Problem& p, const NodeRun& node, bool& pressed) {
   const Matrix& h = p.inertia.h;
   const Vector h_r = times(h, node.r);

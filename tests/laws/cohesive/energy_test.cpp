@@ -14,7 +14,7 @@ constexpr double allowed = 8.0;  // ulp of the terms of the balance
 
 double decades(Random& draw, double low, double high) { return std::pow(10.0, draw(low, high)); }
 
-// Of all shapes, from soft to rigid, with a toughness that mostly leaves one solution.
+// Bonds of all shapes, from soft to rigid, with a toughness that mostly leaves one solution.
 Parameters any_bond(Random& draw) {
   const char* shapes[] = {"bilinear", "exponential", "camacho_ortiz"};
   const std::string shape = shapes[static_cast<int>(draw(0.0, 3.0))];
@@ -69,7 +69,7 @@ struct Seen {
   std::size_t done = 0, solved = 0, turned = 0, pressed = 0, slowed = 0, broken = 0, uneven = 0;
 };
 
-// Of the terms of v_free + H r, in which v rounds.
+// Sum of the sizes of all terms of v_free + H r, to which the rounding of v is relative.
 double natural_velocity(const RandomNodes& nodes, const Runner& run, std::size_t i) {
   double sum = 0.0;
   for (std::size_t a = 0; a < nodes.dimension; ++a) {
@@ -85,7 +85,7 @@ struct Before {
   double stored = 0.0, velocity = 0.0;
 };
 
-// What the step of node i takes, as a sum that is to be 0, and what that rounds by.
+// Energy balance of node i in the step: a sum that is to be 0, and the size that its rounding is relative to.
 struct Balance {
   double sum, size;
 };
@@ -108,7 +108,7 @@ Balance balance_of(const RandomNodes& nodes, const Runner& run, std::size_t i, c
   return {sum, size};
 }
 
-// What is wrong with node i.
+// The violation at node i, if any.
 std::optional<std::string> judge(const RandomNodes& nodes, const Runner& run, std::size_t i,
                                  const Before& last, Seen& seen) {
   for (const double part : run.energy[i])

@@ -52,7 +52,7 @@ TEST(CohesiveProperties, HoldForAnyMotion) {
 }
 
 // A bond that is made on a moving node takes energy from it, or none: also where a stiff spring turns the
-// node round within the step. What the law says of it is the work then.
+// node round within the step. The energy that the law reports is the work then.
 TEST(CohesiveProperties, ABondMadeOnAMovingNodeAddsNoEnergy) {
   Draw draw(13);
   int turned = 0;
@@ -110,7 +110,7 @@ TEST(CohesiveProperties, FrictionGrowsAsTheBondBreaks) {
   EXPECT_GT(sticks, 3000);
 }
 
-// A bond that holds leaves a velocity of 0, short of rounding. What its impulse works on that is no work to
+// A bond that holds leaves a velocity of 0, short of rounding. The work of its impulse on that is no work to
 // be taken off; on a motion it is.
 TEST(CohesiveProperties, WhatRoundsTakesNothingOffABond) {
   Draw draw(16);

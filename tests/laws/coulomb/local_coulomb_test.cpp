@@ -175,7 +175,7 @@ TEST(KineticFriction, AboveTheStaticOneDoesNothing) {
   }
 }
 
-// Of two coefficients the kinetic one lies between, the smaller stays what it is, at rest and however fast.
+// A kinetic coefficient between the two static ones leaves the smaller as it is, at rest and at any speed.
 TEST(KineticFriction, LeavesTheSmallerOfTwoCoefficientsAsItIs) {
   for (const double decay : {0.7, inf_value}) {
     NodeRun node("coulomb",

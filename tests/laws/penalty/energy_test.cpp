@@ -1,5 +1,5 @@
-// What the penalty's springs take and give back, step by step, on random draws: any state, any velocity
-// before (any external force, then), any H, two steps that have nothing to do with each other.
+// Energy that the penalty's springs take and give back, step by step, on random draws: any state, any
+// velocity before (any external force, then), any H, two steps that have nothing to do with each other.
 #include "support/law_runner.hpp"
 #include "support/sizes.hpp"
 
@@ -53,7 +53,7 @@ struct Draw : Random {
     h[5] = t12 * std::sqrt(h[1] * h[2]);
     return h;
   }
-  // Of any direction, or turned round within the step, in part or more than that.
+  // A velocity of any direction, or one turned round within the step, in part or more than that.
   Vector before(const Vector& v_free, std::size_t dimension) {
     Vector v = in_dimension(dimension);
     if ((*this)() < 0.0) return v;

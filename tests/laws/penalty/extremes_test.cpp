@@ -1,4 +1,4 @@
-// What the springs do where a number is zero, or as small or large as numbers are: no spring, no step, rest.
+// Springs where a number is zero, or as small or large as numbers are: no spring, no step, rest.
 #include "support/law_runner.hpp"
 
 #include <sstream>
@@ -9,7 +9,7 @@ namespace {
 constexpr double inf = std::numeric_limits<double>::infinity();
 using Given = std::map<std::string, double>;
 
-// What may stand beside a stiffness, explicit and implicit.
+// Parameters that may stand beside a stiffness, explicit and implicit.
 std::vector<Parameters> beside(double stiffness) {
   std::vector<Parameters> all;
   for (const char* integration : {"explicit", "implicit"})

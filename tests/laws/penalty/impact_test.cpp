@@ -6,7 +6,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-// What an impact of a free mass at speed 1 did, from its first closed step to its last.
+// The impact of a free mass at speed 1, from its first closed step to its last.
 struct Impact {
   double duration = 0.0, rebound = 0.0, deepest = 0.0;
 };

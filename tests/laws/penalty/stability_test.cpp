@@ -97,8 +97,8 @@ TEST(Stability, ImplicitReportsNoLimit) {
   }
 }
 
-// What that is worth: the explicit penalty leaves the limit 2/sqrt(k + K), and gains energy at every impact
-// beyond.
+// In comparison, the explicit penalty has the limit 2/sqrt(k + K), and gains energy at every impact
+// beyond it.
 TEST(Stability, ExplicitNeedsASmallerStep) {
   for (const double stiffness : {1e2, 1e4, 1e6}) {
     const Parameters parameters{{{"stiffness", stiffness}}, {}};

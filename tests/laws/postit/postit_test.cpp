@@ -250,7 +250,7 @@ TEST(Postit, SaturatedRuptureGivesWhatWasLeft) {
   EXPECT_EQ(brittle.r[0], 0.0);
 }
 
-// What a bond holds on to takes nothing from contact: where H does not couple, a node on the plane that
+// The impulse of a bond takes nothing from contact: where H does not couple, a node on the plane that
 // breaks in shear does not enter it, unless it was leaving, and then no faster than it left. So it is also
 // where its sliding turned round within the step and friction is scaled for the work of both.
 TEST(Postit, SaturatedRuptureUnderPressureStaysOnThePlane) {
@@ -343,7 +343,7 @@ TEST(Postit, ShearPulsesCountOnceEach) {
   });
 }
 
-// What was torn off and pressed on again counts, however short it held.
+// The rupture of a bond that was torn off and pressed on again counts, however short it held.
 TEST(Postit, ASeparationMakesTheNextRuptureCount) {
   Glued node({{{"efficiency_decrease", 10.0}, {"memory", 0.05}}, {}}, 1e-3);
   for (int k = 0; k < 7; ++k) {

@@ -1,4 +1,4 @@
-// What C cannot do.
+// Functions that throw, which C cannot do.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <stdexcept>
 

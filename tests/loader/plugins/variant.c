@@ -67,7 +67,7 @@ static const void* ILAW_CALL extension(const char* name) {
   return strcmp(name, "tests.instances/1") == 0 ? &instances : NULL;
 }
 
-/* What an instance says wrong of its state and its parameters. */
+/* Mistakes of an instance in its state and its parameters. */
 #if defined(VARIANT_WRAPPING_STATE)
 static const ilaw_state_variable first = {sizeof first, ILAW_STATE_HISTORY, "first", "1",
                                           "",           UINT64_MAX - 1,     0,       0};
@@ -198,7 +198,7 @@ static const ilaw_parameter parameter = {
     .axis_count = 2};
 static const ilaw_parameter* const parameters[] = {&parameter};
 
-/* What a newer minor version would append to the law. */
+/* The law as a newer minor version would extend it. */
 typedef struct newer_law {
   ilaw_law law;
   double appended;

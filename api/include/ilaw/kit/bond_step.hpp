@@ -31,7 +31,7 @@ struct bond_answer {
   V rate;  // A k/2
   V status, refused;
 };
-// What stays where it was.
+// The answer for a node that keeps its state.
 template <class V>
 ILAW_KIT_INLINE bond_answer<V> unmoved(const bond_problem<V>& p, vector<V> impulse, V status) {
   return {impulse, p.state, 0.0, status, 0.0};
@@ -55,7 +55,7 @@ class bond_step {
   using number = V;
   using mask = mask_of<V>;
 
-  // What a mean stiffness and a coefficient of friction make of the node.
+  // Motion of the node for a mean stiffness and a coefficient of friction.
   struct motion {
     typename bonded_inertia<V, Delassus>::held held;
     vector<V> opening, contact;   // w^+; impulse of contact and friction
@@ -214,7 +214,7 @@ class bond_step {
   V ground_, floor_, below_;  // lowest next position, lowest w^+
 };
 
-// What comes of a step. left: to the scalar fallback.
+// Result of a step. left: nodes for the scalar fallback.
 template <class Step>
 struct bond_result {
   using V = typename Step::number;

@@ -12,7 +12,7 @@ ILAW_KIT_INLINE mask_of<V> none() {
   return detail::mask_from<V>(0U);
 }
 
-// What is the same at all nodes. weight: of the tangential opening, see W; root: its square root.
+// Values that all nodes share. weight: of the tangential opening, see W; root: its square root.
 template <class V>
 struct bond_common {
   step_sizes step;
@@ -41,7 +41,7 @@ class bonded_inertia<V, transverse<V>> {
     const V both = 1.0 / (of_n * of_t);
     return {kappa, both * of_t, both * of_n};
   }
-  // What is left of a free motion, W^-1/2 M W^1/2 d, and H as the node has it now.
+  // The part of a free motion d that the bond leaves, W^-1/2 M W^1/2 d, and H with the bond.
   ILAW_KIT_INLINE vector<V> left(const held& m, vector<V> d) const {
     return {m.left_n * d.n, m.left_t * d.t1, m.left_t * d.t2};
   }
@@ -52,8 +52,8 @@ class bonded_inertia<V, transverse<V>> {
     return normal + ratio_ * weight_ * m.left_t * m.left_t * tangential_product(d, after);
   }
   ILAW_KIT_INLINE mask_of<V> is_smooth(mask_of<V> /*closed*/) const { return !none<V>(); }
-  // Of the bond, on a node that would move by d, and of a contact beside it, which stops a closed node from
-  // closing, whatever the bond does.
+  // Impulse of the bond on a node that would move by d, and of a contact beside it, which stops a closed
+  // node from closing, whatever the bond does.
   ILAW_KIT_INLINE vector<V> impulse(const held& m, vector<V> d, V per_step, vector<V> contact,
                                     mask_of<V> closed, V closing) const {
     const V twice = 2.0 * per_step, normal = twice * taken(m.kappa, m.left_n) * d.n;

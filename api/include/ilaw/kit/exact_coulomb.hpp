@@ -136,7 +136,7 @@ struct pair {
   double x, y;
 };
 
-// What rounding must leave of a positive number, so that nothing becomes singular.
+// The fraction of a positive number that rounding must leave, so that nothing becomes singular.
 inline constexpr double definite = 0x1p-60;
 
 // Eigenvectors (cosine, -sine) and (sine, cosine) of a symmetric matrix, s1 <= s2: Jacobi's rotation, in the

@@ -258,7 +258,7 @@ mask_of<V> solve_friction(const friction_problem<V>& p, friction_answer<V>& a) {
   take_off_positive_work(p, a);
 }
 
-// What of it is left to a solver at a node: nothing where the contact is open.
+// Fills the problem of a node. Nothing is left to a solver where the contact is open.
 template <class Node>
 ILAW_KIT_INLINE asked<number_of<Node>> ask_friction(Node& node,
                                                     const contact_problem<vector<number_of<Node>>>& contact,

@@ -177,7 +177,7 @@ V exp_minus_one(V x) {
   return exponentials_of(x).minus_one;
 }
 // ln(1 + x) for -1/2 <= x <= 1, to 2 ulp also where it is small.
-// What the sum rounds off has its derivative for a factor.
+// The rounding error of the sum is added, times the derivative 1/sum.
 template <class V>
 V log_one_plus(V x) {
   const V sum = 1.0 + x;

@@ -138,7 +138,7 @@ inline constexpr bool has_memory = !std::is_same_v<decltype(Node::state), statel
 template <class Node>
 inline constexpr bool has_spins = has_spin_form<std::remove_cvref_t<decltype(Node::delassus)>>;
 
-// What initialise sees: there is no motion yet.
+// The node that initialise sees: there is no motion yet.
 template <class Law>
 struct initial_node {
   const double time;
@@ -146,7 +146,7 @@ struct initial_node {
   state_t<Law> state;
 };
 
-// What ask says of a node: whether a problem is left, and the status that it has if not.
+// Result of ask at a node: whether a problem is left, and the status if none is.
 template <class V>
 struct asked {
   mask_of<V> open;

@@ -75,7 +75,7 @@ struct state_variable {
   const char* unit = "1";
   const char* doc = "";
   bool internal = false;  // bookkeeping, not for pictures
-  // What a scalar can be; a host's state with anything else is bad input. All are finite.
+  // Allowed values of a scalar; a host's state with anything else is bad input. All are finite.
   double minimum = -std::numeric_limits<double>::max();
   double maximum = std::numeric_limits<double>::max();
   bool whole = false;
@@ -84,7 +84,7 @@ struct state_variable {
     return whole || minimum > -std::numeric_limits<double>::max() ||
            maximum < std::numeric_limits<double>::max();
   }
-  // Of values that are finite.
+  // Expects finite values.
   template <class V>
   ILAW_KIT_INLINE mask_of<V> may_be(V value) const {
     if (whole && minimum == 0.0 && maximum == 1.0) return value * value == value;

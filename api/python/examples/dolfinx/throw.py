@@ -154,7 +154,7 @@ class Fields:
 
 
 def summary(throw, seconds, processor_seconds):
-    """What the run has to say, the same on all ranks."""
+    """The results of the run, the same on all ranks."""
     block = throw.block
     processor_seconds = block.largest(processor_seconds)
     counts = np.bincount(throw.contact.status, minlength=len(ilaw.Status))

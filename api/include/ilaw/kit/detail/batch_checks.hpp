@@ -12,7 +12,7 @@ template <class Array>
 bool is_of_other_numbers(const instance_base& made, const Array& a) {
   return made.numbers == ILAW_NUMBERS_FLOAT ? static_cast<bool>(a.values) : static_cast<bool>(a.floats);
 }
-// Of the arrays that are read or written; those of a state are always doubles.
+// Checks the arrays that are read or written; those of a state are always doubles.
 inline const char* other_numbers(const instance_base& made, const ilaw_batch& b, std::uint32_t read) {
   const auto other = [&](const auto& a) { return is_of_other_numbers(made, a); };
   bool is_bad =

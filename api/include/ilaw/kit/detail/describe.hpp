@@ -16,7 +16,7 @@ constexpr std::array<const T*, N> pointers_to(const std::array<T, N>& elements) 
 
 constexpr std::uint32_t flag_if(bool condition, std::uint32_t flag) { return condition ? flag : 0U; }
 
-// Of L<pack>, whose members tell what may vary.
+// The parameter of L<pack>, whose members tell what may vary.
 template <class Law>
 constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
   const bool is_choice = p.choices.count > 0, varies = p.member.may_vary(),

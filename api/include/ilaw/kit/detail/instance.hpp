@@ -285,7 +285,7 @@ class instance_builder {
     return has_times ? ILAW_OK : check_conflict(made_.at(0.0), nullptr);
   }
 
-  // Of any table; the same where none follows.
+  // The next time of any table after `time`; `time` itself where none follows.
   double next_time(double time) const {
     double next = infinity;
     for (const table& t : made_.tables) next = smaller(next, t.next_time(time));
@@ -351,7 +351,7 @@ class instance_builder {
     return ILAW_OK;
   }
 
-  // What the instance needs and can do.
+  // Inputs, capabilities and permissions of the instance.
   ilaw_result state_needs() {
     std::uint32_t mask = Law::card.inputs;
     if constexpr (requires { made_.law.inputs(); })

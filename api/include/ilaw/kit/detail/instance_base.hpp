@@ -7,7 +7,7 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// What the loops need to know of an instance, whatever its law.
+// The part of an instance that the loops need, whatever its law.
 struct instance_base {
   std::uint32_t dimension, delassus_form, frame, has_tangent, numbers;
   std::uint32_t inputs, balance_inputs;

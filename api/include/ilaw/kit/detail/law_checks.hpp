@@ -366,7 +366,7 @@ constexpr bool passes_members() {
   return passes;
 }
 
-// What needs all of them: nodes.
+// Checks of the calls with nodes, which need valid names and members.
 template <class Law>
 constexpr bool passes_nodes() {
   bool passes = true;

@@ -55,7 +55,7 @@ ILAW_KIT_INLINE One row_of_three(One a, One b, One c, std::integer_sequence<int,
 #endif
 }
 
-// Of two registers side by side every second number, from the first or second on; and the reverse.
+// Every second number of two registers side by side, from the first or second on; and the reverse.
 template <int Column, int... K>
 ILAW_KIT_INLINE one every_second(one a, one b, std::integer_sequence<int, K...>) {
   return __builtin_shufflevector(a, b, 2 * K + Column...);

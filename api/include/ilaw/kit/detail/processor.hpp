@@ -15,7 +15,7 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// What the instruction CPUID says, and which registers the operating system keeps (XCR0).
+// Results of the instruction CPUID, and the registers that the operating system keeps (XCR0).
 struct processor {
   std::uint32_t leaf_1_ecx = 0, leaf_7_ebx = 0, extended_ecx = 0, kept = 0;
 };

@@ -94,7 +94,7 @@ ILAW_KIT_INLINE char* place_in(Struct& s, int k) {
   return reinterpret_cast<char*>(&s) + static_cast<std::size_t>(k) * sizeof(V);
 }
 
-// What is left to do of a pack: the answers to its problems, all of it by the careful kernel, or nothing.
+// Work left on a pack: the answers to its problems, all of it by the careful kernel, or nothing.
 enum class pack_state : char { open, careful, stored };
 
 // Where a loop is: in which of its two passes, at which pack of the block, and at which of the problems.

@@ -13,7 +13,7 @@ inline constexpr int most_parameters = 32, most_amounts = 8, most_states = 24;
 // Where the tangents of nodes in the host's axes come from.
 enum class tangents { of_plane, given, carried, chosen };
 
-// What all nodes of a view share.
+// Values that all nodes of a view share.
 struct view_options {
   std::int64_t count;
   step_sizes step;
@@ -220,15 +220,15 @@ enum reason : int {
   reason_of_first_variable = 32,
 };
 
-// What a walk found.
+// Findings of a walk.
 struct tally {
   std::int64_t bad_count = 0, first_bad_node = -1, by_scalar_fallback = 0;
   int reason = no_reason;
   double stable_velocity_step = infinity;
 };
 
-// Of doubles: floats lose by it. How many nodes ahead a loop asks for arrays that no cache holds, and from
-// how many nodes on; 32 to 128 are alike.
+// For doubles only, as floats lose by it: how many nodes ahead a loop prefetches arrays that no cache holds,
+// and from how many nodes on; 32 to 128 are alike.
 inline constexpr int prefetch_distance = 64;
 inline constexpr std::int64_t prefetch_from = 16384;
 
