@@ -89,7 +89,8 @@ spin_arrays spins_of(const ilaw_batch* batch) {
 #ifdef SAMPLE_OF_1_0
   (void)batch;
 #else
-  if (batch->struct_size < sizeof *batch) return spins; /* of a host of 1.0 */
+  if (batch->struct_size < sizeof *batch && !breaks("call-refused: spins"))
+    return spins; /* of a host of 1.0 */
   spins.free = batch->spin_free, spins.previous = batch->spin_previous;
   spins.moment = batch->moment, spins.after = batch->spin;
 #endif
