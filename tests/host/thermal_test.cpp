@@ -422,12 +422,10 @@ TEST(Thermal, RefusesTwoTemperaturesOfANode) {
   scene["interfaces"][0]["obstacle"]["temperature"] = {{0, 300}, {1, 320}};
   EXPECT_EQ(refusal_of(scene), "not refused");
   scene["fields"] = {{"temperature", 300}};
-  EXPECT_NE(refusal_of(scene).find("/fields/temperature: found a value, expected none"),
-            std::string::npos);
+  EXPECT_NE(refusal_of(scene).find("/fields/temperature: found a value, expected none"), std::string::npos);
   scene.erase("fields");
   scene["interfaces"][0]["parameters"]["temperature"] = 300;
-  EXPECT_NE(refusal_of(scene).find("/interfaces/0/parameters/temperature: found a value"),
-            std::string::npos);
+  EXPECT_NE(refusal_of(scene).find("/interfaces/0/parameters/temperature: found a value"), std::string::npos);
 }
 
 TEST(Thermal, RefusesContactWithABodyWithoutTemperature) {
