@@ -91,7 +91,7 @@ inline double mean_delassus(const Block& block, std::size_t q) {
   }
 }
 
-// The same of J, the response of the spin to a moment.
+// Mean of the diagonal of J, the response of the spin to a moment.
 inline double mean_spin_delassus(const Block& block, std::size_t q) {
   const double* j = block.column(block.layout->delassus + 3) + q;
   return (j[0] + 2.0 * j[block.stride]) / 3.0;

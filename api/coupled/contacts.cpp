@@ -191,8 +191,9 @@ void Contacts::lay_out(const Bodies& bodies) {
   layout_.counterpart_arm = take(has_arms || has_lengths, has_arms ? 3 : 1);
   layout_.length = take(has_spins(), 1);
   layout_.weight = take(weighted, layout_.ends * layout_.weight_size);
-  const bool wall_spins = given_.wall_spin.values || given_.wall_spin_previous.values;
-  layout_.wall = take(given_.wall_velocity.values || (has_spins() && wall_spins), layout_.width);
+  const bool wall_moves = given_.wall_velocity.values || given_.wall_previous.values;
+  const bool wall_spins = has_spins() && (given_.wall_spin.values || given_.wall_spin_previous.values);
+  layout_.wall = take(wall_moves || wall_spins, layout_.width);
   layout_.gap = take(theirs_.gap.values != nullptr && (read & ILAW_INPUT_GAP), 1);
   layout_.gap_offset = take(theirs_.gap_offset.values != nullptr && (read & ILAW_INPUT_GAP), 1);
   layout_.area = take(theirs_.area.values != nullptr && (read & ILAW_INPUT_AREA), 1);

@@ -12,7 +12,7 @@ using Vector = std::array<double, 3>;
 using Symmetric = std::array<double, 6>;
 using Wrench = std::array<double, 6>;  // impulse and moment, or velocity and spin
 
-// Numbers at distances of stride.
+// Reads `width` numbers at distances of stride.
 template <std::size_t width>
 std::array<double, width> columns_at(const double* first, std::size_t stride) {
   std::array<double, width> read;

@@ -1,7 +1,6 @@
 /* A law in plain C99 that keeps every rule of `ilaw check`: a one-sided dashpot with friction that wears, and
- * with a moment against spins where the form of H has them. The
- * environment variable ILAW_CHECK_BREAK, read when the library is loaded, names the one rule that it breaks.
- */
+ * with a moment against spins where the form of H has them. The environment variable ILAW_CHECK_BREAK, read
+ * when the library is loaded, names the one rule that it breaks. */
 #ifndef ILAW_TESTS_SAMPLE_H
 #define ILAW_TESTS_SAMPLE_H
 
@@ -38,6 +37,17 @@ struct ilaw_instance {
   ilaw_state_variable variable;
   const ilaw_state_variable* variables[1];
 };
+
+/* The arrays of spins of a batch. The law is compiled against the header of 1.0, too (tests/versions), which
+ * has none. */
+typedef struct spin_arrays {
+  ilaw_input free, previous;
+  ilaw_output moment, after;
+} spin_arrays;
+#ifdef SAMPLE_OF_1_0
+enum { ILAW_DELASSUS_TRANSVERSE_SPIN = 0, ILAW_PARAMETER_NEEDS_SPINS = 0 };
+#endif
+spin_arrays spins_of(const ilaw_batch* batch);
 
 /* Whether this is the rule to break. */
 int breaks(const char* rule);

@@ -99,7 +99,7 @@ static ilaw_result read_argument(ilaw_instance* made, const ilaw_argument* a) {
   if (strcmp(a->name, "damping") == 0) return read_quantity(made, &made->damping, p, a);
   if (strcmp(a->name, "friction") == 0) return read_quantity(made, &made->friction, p, a);
   if (strcmp(a->name, "temperature") == 0) return read_quantity(made, &made->temperature, p, a);
-  if ((p->flags & ILAW_PARAMETER_NEEDS_SPINS) && made->setup.delassus_form != ILAW_DELASSUS_TRANSVERSE_SPIN &&
+  if (strcmp(a->name, "reach") == 0 && made->setup.delassus_form != ILAW_DELASSUS_TRANSVERSE_SPIN &&
       !breaks("parameter-spins"))
     return ILAW_INVALID_PARAMETER;
   if (strcmp(a->name, "wear") == 0 || strcmp(a->name, "reach") == 0) {

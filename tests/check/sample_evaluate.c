@@ -50,16 +50,18 @@ static int needs_previous(const ilaw_batch* b) {
 }
 
 static int lacks_spins(const ilaw_instance* made, const ilaw_batch* b) {
+  const spin_arrays a = spins_of(b);
   if (made->setup.delassus_form != ILAW_DELASSUS_TRANSVERSE_SPIN) return 0;
   if (b->struct_size < sizeof *b) return !breaks("call-refused: spins");
-  return lacks(made, b->spin_free.values, b->spin_free.floats, 1) ||
-         lacks(made, b->spin_previous.values, b->spin_previous.floats,
+  return lacks(made, a.free.values, a.free.floats, 1) ||
+         lacks(made, a.previous.values, a.previous.floats,
                needs_previous(b) && !breaks("balance-inputs: spins")) ||
-         lacks(made, b->moment.values, b->moment.floats, 1) ||
-         (!breaks("array-numbers: spins") && lacks(made, b->spin.values, b->spin.floats, 0));
+         lacks(made, a.moment.values, a.moment.floats, 1) ||
+         (!breaks("array-numbers: spins") && lacks(made, a.after.values, a.after.floats, 0));
 }
 
 static const char* wrong_arrays(const ilaw_instance* made, const ilaw_batch* b) {
+  const spin_arrays spins = spins_of(b);
   const int global = made->setup.frame == ILAW_FRAME_GLOBAL,
             tangent = made->setup.has_tangent && made->setup.dimension == 3;
   int k;
@@ -83,7 +85,8 @@ static const char* wrong_arrays(const ilaw_instance* made, const ilaw_batch* b) 
     return "a state is missing or of floats";
   if (b->node_count > 1 && b->impulse.node_stride == 0) return "impulse has a stride of 0";
   if (made->setup.delassus_form == ILAW_DELASSUS_TRANSVERSE_SPIN && b->node_count > 1 &&
-      (b->moment.node_stride == 0 || (b->spin.node_stride == 0 && (b->spin.values || b->spin.floats))))
+      (spins.moment.node_stride == 0 ||
+       (spins.after.node_stride == 0 && (spins.after.values || spins.after.floats))))
     return "moment or spin has a stride of 0";
   return NULL;
 }

@@ -83,15 +83,30 @@ static double sum_of(const ilaw_input* from, const ilaw_batch* b, int width) {
   return sum;
 }
 
+spin_arrays spins_of(const ilaw_batch* batch) {
+  spin_arrays spins;
+  memset(&spins, 0, sizeof spins);
+#ifdef SAMPLE_OF_1_0
+  (void)batch;
+#else
+  if (batch->struct_size < sizeof *batch && !breaks("call-refused: spins"))
+    return spins; /* of a host of 1.0 */
+  spins.free = batch->spin_free, spins.previous = batch->spin_previous;
+  spins.moment = batch->moment, spins.after = batch->spin;
+#endif
+  return spins;
+}
+
 /* The sum of all values on which a result may depend. */
 static double sum_of_all(const ilaw_batch* b, int d) {
+  const spin_arrays spins = spins_of(b);
   double sum = b->time + b->velocity_step + sum_of(&b->v_free, b, d) + sum_of(&b->delassus, b, 1) +
                sum_of(&b->gap, b, 1) + sum_of(&b->area, b, 1) + sum_of(&b->state_in, b, 1);
   if (is_wanted(&b->energy)) sum += sum_of(&b->v_previous, b, d);
   if (has(&b->tangent)) sum += sum_of(&b->tangent, b, d);
   if (has(&b->gap_offset)) sum += sum_of(&b->gap_offset, b, 1);
   if (has(&b->normal)) sum += sum_of(&b->normal, b, d);
-  if (has(&b->spin_free)) sum += sum_of(&b->spin_free, b, d);
+  if (has(&spins.free)) sum += sum_of(&spins.free, b, d);
   return sum;
 }
 
@@ -164,6 +179,7 @@ static void gather_delassus(node* at, const ilaw_instance* made, const ilaw_batc
 }
 
 static void gather(node* at, const ilaw_instance* made, const ilaw_batch* b, int64_t i) {
+  const spin_arrays spins = spins_of(b);
   int c;
   memset(at, 0, sizeof *at);
   at->d = (int)made->setup.dimension;
@@ -174,7 +190,7 @@ static void gather(node* at, const ilaw_instance* made, const ilaw_batch* b, int
   at->t[1] = 1.0;
   for (c = 0; c < at->d; ++c) {
     at->v[c] = read_array(&b->v_free, i, c);
-    if (at->spins) at->w[c] = read_array(&b->spin_free, i, c);
+    if (at->spins) at->w[c] = read_array(&spins.free, i, c);
     if (at->global) at->n[c] = read_array(&b->normal, i, c);
     if (at->global && at->d == 3 && made->setup.has_tangent) at->t[c] = read_array(&b->tangent, i, c);
   }
@@ -343,13 +359,14 @@ static void measure(node* at) {
 }
 
 static void account(node* at, const ilaw_batch* b, int64_t i) {
+  const spin_arrays spins = spins_of(b);
   double mean[3] = {0.0, 0.0, 0.0}, mean_spin[3] = {0.0, 0.0, 0.0}, normal, impact, twist;
   int c;
   if (!is_wanted(&b->energy) && !b->amounts) return;
   for (c = 0; c < at->d && has(&b->v_previous); ++c)
     mean[c] = 0.5 * (read_array(&b->v_previous, i, c) + at->after[c]);
-  for (c = 0; at->spins && c < 3 && has(&b->spin_previous); ++c)
-    mean_spin[c] = 0.5 * (read_array(&b->spin_previous, i, c) + at->spin[c]);
+  for (c = 0; at->spins && c < 3 && has(&spins.previous); ++c)
+    mean_spin[c] = 0.5 * (read_array(&spins.previous, i, c) + at->spin[c]);
   twist = -dot(at->m, mean_spin);
   if (breaks("energy-balance: moment")) twist = -twist;
   normal = dot(at->n, at->r);
@@ -377,6 +394,7 @@ static int leaves_out(const char* output, const ilaw_batch* b, int64_t k) {
 }
 
 static void write_node(const node* at, const ilaw_batch* b, int64_t k, const double* state) {
+  const spin_arrays spins = spins_of(b);
   const int64_t i = node_of(b, k);
   const double factor = breaks("floats-rounded: moment") && at->floats ? 1.0 + 1e-6 : 1.0;
   int c;
@@ -393,8 +411,8 @@ static void write_node(const node* at, const ilaw_batch* b, int64_t k, const dou
     put(&b->velocity, i, c, breaks("velocity-output") ? at->v[c] : at->after[c]);
   for (c = 0; at->spins && c < 3; ++c) {
     if (!breaks("outputs-written: moment") || at->status != ILAW_FREE)
-      put(&b->moment, i, c, factor * at->m[c]);
-    if (!leaves_out("outputs-written: spin", b, k)) put(&b->spin, i, c, at->spin[c]);
+      put(&spins.moment, i, c, factor * at->m[c]);
+    if (!leaves_out("outputs-written: spin", b, k)) put(&spins.after, i, c, at->spin[c]);
   }
 }
 
