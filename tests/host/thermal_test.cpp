@@ -175,6 +175,38 @@ TEST(Thermal, BringsTwoPointsToTheirEquilibrium) {
   }
 }
 
+// One mass between several: each contact has a part of its capacity.
+TEST(Thermal, SharesANodeBetweenContacts) {
+  for (const int others : {3, 4})
+    for (const double dt : {0.13, 0.031, 0.0077}) {
+      json scene = {{"model", {{"type", "points"}, {"dimension", 1}}}, {"time", {{"dt", dt}, {"end", 2.0}}}};
+      scene["interfaces"] = scene["loads"] = json::array();
+      for (int k = 0; k <= others; ++k) {
+        const json thermal = {{"specific_heat", 3}, {"initial_temperature", k == 0 ? 400 : 300}};
+        scene["model"]["points"].push_back({{"mass", 2}, {"position", {0}}, {"thermal", thermal}});
+        scene["loads"].push_back({{"type", "force"},
+                                  {"nodes", {k}},
+                                  {"direction", {k == 0 ? -others : 1}},
+                                  {"history", {{0, 7}}}});
+        if (k == 0) continue;
+        scene["interfaces"].push_back({{"law", "conductance"},
+                                       {"parameters", {{"conductance", 1e12}}},
+                                       {"nodes", {0}},
+                                       {"against", {{"nodes", {k}}, {"normal", {1}}}}});
+      }
+      Scene read = scene_of(scene.dump());
+      Integrator integrator = integrator_of(read);
+      for (int n = 0; n < 15; ++n) {
+        integrator.step();
+        const HeatReport heat = integrator.temperatures()->report();
+        ASSERT_GT(heat.lowest, 300 - 1e-9) << others << " " << dt << " step " << n;
+        ASSERT_LT(heat.highest, 400 + 1e-9);
+        ASSERT_LT(heat.balance_error, 1e-13);
+      }
+      EXPECT_NEAR(integrator.temperatures()->at(0), 300 + 100.0 / (others + 1), 0.2);
+    }
+}
+
 // Two columns on each other, pressed together by 1e-3 and shortened by as much: in equilibrium.
 json two_columns(const Bar& below, const Bar& above, double dt, double end, const json& interface) {
   json scene = scene_with({column(below, "below", 0), column(above, "above", below.length)}, dt, end);
@@ -227,6 +259,29 @@ TEST(Thermal, IsStableWithAnyConductance) {
         ASSERT_LT(heat.highest, 400 + 1e-9);
       }
     }
+}
+
+// Nodes of both meshes are in several contacts each, as nodes and in facets.
+TEST(Thermal, IsStableWhereBothSidesAct) {
+  const Bar below{.temperature = 400, .elements = 3}, above{.temperature = 300, .elements = 4};
+  for (const double fraction : step_fractions) {
+    const double dt = fraction * std::min(below.stable_step(), above.stable_step());
+    const json law = {{"law", "conductance"}, {"parameters", {{"conductance", 1e12}}}};
+    json scene = two_columns(below, above, dt, 50 * dt, law);
+    scene["interfaces"][0]["against"]["both_sides"] = true;
+    scene["model"]["blocks"][0]["elements"] = {2, 2, below.elements};
+    scene["model"]["blocks"][1]["elements"] = {3, 3, above.elements};
+    for (json& block : scene["model"]["blocks"]) block["thermal"]["conductivity"] = 0;
+    Scene read = scene_of(scene.dump());
+    Integrator integrator = integrator_of(read);
+    for (int n = 0; n < 50; ++n) {
+      integrator.step();
+      const HeatReport heat = integrator.temperatures()->report();
+      ASSERT_GT(heat.lowest, 300 - 1e-9) << fraction << " step " << n;
+      ASSERT_LT(heat.highest, 400 + 1e-9) << fraction << " step " << n;
+      ASSERT_LT(heat.balance_error, 1e-12);
+    }
+  }
 }
 
 // ---- heat of friction -----------------------------------------------------------------------------------
@@ -367,6 +422,28 @@ TEST(Thermal, HeatsTheShippedTyreBlock) {
   }
   EXPECT_NEAR(rises[0] / rises[2], 1.0, 0.01);
   EXPECT_NEAR(rises[1] / rises[2], 1.0, 0.01);
+}
+
+// A failed run reports its last complete step.
+TEST(Thermal, TakesBackAStepThatOverflows) {
+  const Bar bar{.specific_heat = 0.01, .conductivity = 1e-6};
+  json scene = scene_with({column(bar, "bar", 0)}, 0.01, 1.0);
+  scene["loads"] = {
+      {{"type", "heat_flux"}, {"nodes", "bar.z_max"}, {"history", {{0, 1}, {0.045, 1}, {0.05, 1e308}}}}};
+  Scene read = scene_of(scene.dump());
+  Integrator integrator = integrator_of(read);
+  HeatReport before;
+  EXPECT_THROW(
+      for (int n = 0; n < 100; ++n) {
+        before = integrator.temperatures()->report();
+        integrator.step();
+      },
+      Diverged);
+  integrator.take_back_step();
+  const HeatReport after = integrator.temperatures()->report();
+  EXPECT_EQ(after.stored, before.stored);
+  EXPECT_EQ(after.supplied, before.supplied);
+  EXPECT_EQ(after.highest, before.highest);
 }
 
 TEST(Thermal, WritesTemperaturesAndHeat) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact/contact_heat.hpp"
 
+#include <cmath>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -28,7 +29,8 @@ void ContactHeat::open(double time, std::size_t contact_count, const std::vector
 }
 
 // Against a facet: the temperature where the node meets it, and the capacity that heat meets there if it is
-// divided as the impulse is, 1/C = sum of w_i^2/C_i.
+// divided as the impulse is, 1/C = sum of w_i W_i/C_i. A node in several contacts is a set of parallel parts:
+// one has w_i/W_i of its capacity, where W_i is the sum of its weights. Alone, W_i = w_i.
 void ContactHeat::give(std::size_t contact, int node, const ContactPoint& point,
                        ContactArrays& contacts) const {
   double temperature = obstacle_temperature_, capacity = std::numeric_limits<double>::infinity();
@@ -37,11 +39,13 @@ void ContactHeat::give(std::size_t contact, int node, const ContactPoint& point,
     for (std::size_t i = 0; i < static_cast<std::size_t>(point.partner_count); ++i) {
       const double weight = point.weights[i];
       temperature += weight * temperature_[point.partners[i]];
-      capacity += weight * weight / capacity_[point.partners[i]];
+      const double sum = sums_of_weights_ ? sums_of_weights_[point.partners[i]] : std::fabs(weight);
+      capacity += std::fabs(weight) * sum / capacity_[point.partners[i]];
     }
     capacity = 1.0 / capacity;
   }
-  const std::array values{temperature_[node], temperature, capacity_[node], capacity};
+  const double own = sums_of_weights_ ? capacity_[node] / sums_of_weights_[node] : capacity_[node];
+  const std::array values{temperature_[node], temperature, own, capacity};
   for (std::size_t k = 0; k < values.size(); ++k)
     if (inputs_[k] >= 0) contacts.parameters[static_cast<std::size_t>(inputs_[k])][contact] = values[k];
 }

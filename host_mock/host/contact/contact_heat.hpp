@@ -28,6 +28,10 @@ class ContactHeat {
     temperature_ = temperature;
     capacity_ = capacity;
   }
+  // Sum of the weights of each node of the model in all contacts that conduct, where contacts share nodes;
+  // the array must stay.
+  void share(const double* sums_of_weights) { sums_of_weights_ = sums_of_weights; }
+  bool conducts() const { return amounts_[2] >= 0; }
   // Before the contacts of a step.
   void open(double time, std::size_t contact_count, const std::vector<std::int32_t>& active);
   // Before a law is evaluated.
@@ -54,7 +58,8 @@ class ContactHeat {
   std::optional<Table> obstacle_;
   double obstacle_temperature_ = 0.0;  // in this step
   const double *temperature_ = nullptr, *capacity_ = nullptr;
-  std::vector<Flow> flows_;  // by contact_index
+  const double* sums_of_weights_ = nullptr;  // null: no node is shared
+  std::vector<Flow> flows_;                  // by contact_index
 };
 
 }  // namespace ilaw::host

@@ -50,6 +50,12 @@ void CoupledGroup::add(const CoupledContact& contact, const ContactArrays& array
   for (std::size_t number = 0; number < state_size_; ++number) state_.push_back(arrays.state.at(k, number));
 }
 
+void CoupledGroup::read_parameters(const ContactArrays& arrays) {
+  for (std::size_t p = 0; p < parameters_.size(); ++p)
+    for (std::size_t i = 0; i < count(); ++i)
+      parameters_[p][i] = arrays.parameters[p][static_cast<std::size_t>(contacts_[i])];
+}
+
 void CoupledGroup::keep_forces(double velocity_step) {
   forget_forces();
   const auto d = static_cast<std::size_t>(dimension_);

@@ -31,6 +31,8 @@ class CoupledGroup {
   // ---- before a solve ----
   void open(bool watches_inputs);
   void add(const CoupledContact& contact, const ContactArrays& arrays);
+  // Reads the parameters per node again, which changed since.
+  void read_parameters(const ContactArrays& arrays);
   // Calls visit with each entry of the bodies: a node, which visit may replace by its place among the bodies
   // of the solve.
   template <class Visit>

@@ -51,8 +51,6 @@ const ilaw_contacts& CoupledInterface::open(const StepView& step) {
       interface_.find_delassus(k);
     }
     if (is_idle(contact)) continue;
-    if (interface_.heat_)
-      interface_.heat_->give(k, interface_.node_of(contact), interface_.point(contact), contacts);
     const Vector after = obstacle.velocity() + surface.after,
                  before = obstacle.velocity_before() + surface.before;
     group_.add({contact, interface_.node_of(contact), point, after, before}, contacts);
@@ -65,6 +63,26 @@ bool CoupledInterface::is_idle(std::int32_t contact) const {
   const auto k = static_cast<std::size_t>(contact);
   return !interface_.search_.axes_turn() && !interface_.contacts_.must_be_evaluated(k) &&
          interface_.gap(contact) > interface_.search_.closing();
+}
+
+void CoupledInterface::add_conducting(std::vector<double>& weights) const {
+  if (!interface_.heat_ || !interface_.heat_->conducts()) return;
+  for (std::size_t i = 0; i < group_.count(); ++i)
+    interface_.point(group_.contact(i))
+        .for_each_node(interface_.node_of(group_.contact(i)), [&](int node, double weight) {
+          weights[static_cast<std::size_t>(node)] += std::fabs(weight);
+        });
+}
+
+void CoupledInterface::give_temperatures(const std::vector<double>& weights) {
+  if (!interface_.heat_) return;
+  if (interface_.heat_->conducts()) interface_.heat_->share(weights.data());
+  for (std::size_t i = 0; i < group_.count(); ++i) {
+    const std::int32_t contact = group_.contact(i);
+    interface_.heat_->give(static_cast<std::size_t>(contact), interface_.node_of(contact),
+                           interface_.point(contact), interface_.contacts_);
+  }
+  group_.read_parameters(interface_.contacts_);
 }
 
 void CoupledInterface::take() {

@@ -31,9 +31,8 @@ class ThermalModel {
   // Adds the heat that conduction brings to each node in a time.
   void add_conduction(const Dofs& temperature, double time, Dofs& heat) const;
 
-  // The largest step for which no row of I - h C^-1 K exceeds 1 in sum (Gershgorin 1931), and the body that
-  // has it. Where no K_ij between two nodes is positive, no temperature then leaves the range of its
-  // neighbors.
+  // The largest step at which Gershgorin's circles of C^-1 K end at 2/h, so that |1 - h lambda| <= 1, and the
+  // body that has it. Where no K_ij between two nodes is positive, rows of I - h C^-1 K are also means.
   struct StableStep {
     double step = std::numeric_limits<double>::infinity();
     std::string body;

@@ -41,6 +41,7 @@ class CoupledStep {
 
  private:
   void open(const StepView& step);
+  void give_temperatures();
   void number_bodies();
   bool forget_forces();
   double rounding_of_gaps(const StepView& step) const;
@@ -53,6 +54,7 @@ class CoupledStep {
   std::vector<std::int32_t> nodes_;  // of the bodies, in ascending order
   std::vector<std::int32_t> body_;   // of each node of the model; -1: no contact has it
   std::vector<double> inverse_mass_, velocity_, previous_;  // of the bodies
+  std::vector<double> conducting_;  // of each node of the model: sum of its weights in contacts that conduct
   ilaw::coupled solver_;
   ilaw_coupled_report report_{};
 };

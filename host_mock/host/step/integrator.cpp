@@ -88,6 +88,7 @@ void Integrator::step() {
 
 // A failed run reports its last complete step.
 void Integrator::take_back_step() {
+  if (temperatures_) temperatures_->take_back();
   if (!has_begun_step_) return;
   v_ = v_before_;
   u_ -= dt_ * v_;

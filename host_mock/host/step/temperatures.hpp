@@ -37,6 +37,8 @@ class Temperatures {
 
   // The temperature of a node that has one, at the half step after time().
   double at(int node) const { return model_.initial_temperature()[node] + rise_[node]; }
+  // Where the last step made a temperature infinite: those before it, and their sums.
+  void take_back();
   bool all_finite() const { return rise_.allFinite(); }
   HeatReport report() const;
 
@@ -63,10 +65,11 @@ class Temperatures {
   std::vector<Held> held_;
   std::vector<const HeatLoad*> fluxes_;
   // T - T_0, so that small rises close their balance, too.
-  Dofs rise_, free_rise_;
+  Dofs rise_, free_rise_, rise_before_;
   Dofs temperature_, capacity_;  // T_free, and capacities as laws see them: infinite where T is held
   Dofs heat_;                    // scratch
-  Sums sums_, sums_before_;      // sums_before_: of the last whole step
+  Sums sums_, sums_before_;      // sums_before_: of the last complete step
+  Sums sums_earlier_;            // of the step before that
   double held_at_ = 0.0;         // the time at which temperatures are held: the end of the step
 };
 
