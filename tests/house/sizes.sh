@@ -31,7 +31,8 @@ head() {
 row() {
   local line="| $1 |" commit
   for commit in "${commits[@]}"; do
-    read -r files first second < <(cd "$work/$commit" && "${@:2}")
+    files='' first='' second=''  # of a folder that the commit does not have
+    read -r files first second < <(cd "$work/$commit" && "${@:2}" 2>/dev/null) || true
     line+=" ${files:-0} | ${first:-0} | ${second:-0} |"
   done
   echo "$line"
