@@ -43,10 +43,8 @@ std::vector<double> first_values(std::string_view field, const InterfaceSetup& s
   const std::vector<int>& partners = setup.counterpart->partners();
   const bool is_counterpart = field.starts_with("counterpart_"), is_capacity = field.ends_with("capacity");
   double obstacle = std::numeric_limits<double>::infinity();
-  if (!is_capacity && setup.heat->obstacle_temperature)
-    obstacle = setup.heat->obstacle_temperature->at(0.0)[0];
-  else if (!is_capacity)
-    obstacle = 0.0;
+  if (!is_capacity)
+    obstacle = setup.heat->obstacle_temperature ? setup.heat->obstacle_temperature->at(0.0)[0] : 0.0;
   std::vector<double> values;
   for (std::size_t k = 0; k < setup.nodes.size(); ++k) {
     if (is_counterpart && partners.empty()) {

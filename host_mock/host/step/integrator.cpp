@@ -88,7 +88,6 @@ void Integrator::step() {
 
 // A failed run reports its last complete step.
 void Integrator::take_back_step() {
-  if (temperatures_) temperatures_->take_back();
   if (!has_begun_step_) return;
   v_ = v_before_;
   u_ -= dt_ * v_;
@@ -245,8 +244,7 @@ void Integrator::add_coupled_reactions(const StepView& step) {
 }
 
 void Integrator::take_heat() {
-  temperatures_->take(interfaces_);
-  if (temperatures_->all_finite()) return;
+  if (temperatures_->take(interfaces_)) return;
   throw Diverged("a temperature is not finite, step " + std::to_string(steps_ + 1));
 }
 

@@ -14,7 +14,6 @@ Temperatures::Temperatures(const ThermalModel& model, const Loads& loads, const 
     : model_(model),
       rise_(Dofs::Zero(model.capacity().size())),
       free_rise_(rise_),
-      rise_before_(rise_),
       temperature_(rise_),
       capacity_(model.capacity()),
       heat_(rise_) {
@@ -73,7 +72,7 @@ void Temperatures::add_flow(const Interface& interface, std::int32_t contact) {
     heat_[point.partners[i]] += point.weights[i] * flow.counterpart;
 }
 
-void Temperatures::take(const Interfaces& interfaces) {
+bool Temperatures::take(const Interfaces& interfaces) {
   heat_.setZero();
   for (const auto& interface : interfaces)
     if (interface->heat())
@@ -81,21 +80,14 @@ void Temperatures::take(const Interfaces& interfaces) {
   for (Eigen::Index node = 0; node < heat_.size(); ++node)
     if (heat_[node] != 0.0) free_rise_[node] += heat_[node] / model_.capacity()[node];
   hold(held_at_);
-  rise_before_ = rise_;
-  sums_earlier_ = sums_before_;
+  if (!free_rise_.allFinite()) return false;
   rise_ = free_rise_;
   publish();
   for (const Sum sum : {sums_.obstacles, sums_.friction, sums_.supplied})
     sums_.largest = std::max(sums_.largest, std::abs(static_cast<double>(sum)));
   sums_.largest = std::max(sums_.largest, model_.capacity().dot(rise_.cwiseAbs()));
   sums_before_ = sums_;
-}
-
-void Temperatures::take_back() {
-  if (all_finite()) return;
-  rise_ = free_rise_ = rise_before_;
-  sums_ = sums_before_ = sums_earlier_;
-  publish();
+  return true;
 }
 
 Temperatures::Sum Temperatures::stored() const {

@@ -31,15 +31,13 @@ class Temperatures {
   // Interfaces read the temperatures from here.
   Temperatures(const ThermalModel& model, const Loads& loads, const Interfaces& interfaces);
 
-  // To T_free, of which take() makes the temperature at the end of the step.
+  // Sets T_free. take() then makes the temperatures at the end of the step; where one is not finite, it
+  // keeps those before the step and returns false.
   void conduct(StepTimes step);
-  void take(const Interfaces& interfaces);
+  [[nodiscard]] bool take(const Interfaces& interfaces);
 
   // The temperature of a node that has one, at the half step after time().
   double at(int node) const { return model_.initial_temperature()[node] + rise_[node]; }
-  // Where the last step made a temperature infinite: those before it, and their sums.
-  void take_back();
-  bool all_finite() const { return rise_.allFinite(); }
   HeatReport report() const;
 
   void save(std::ostream& out) const;
@@ -65,11 +63,10 @@ class Temperatures {
   std::vector<Held> held_;
   std::vector<const HeatLoad*> fluxes_;
   // T - T_0, so that small rises close their balance, too.
-  Dofs rise_, free_rise_, rise_before_;
+  Dofs rise_, free_rise_;
   Dofs temperature_, capacity_;  // T_free, and capacities as laws see them: infinite where T is held
   Dofs heat_;                    // scratch
   Sums sums_, sums_before_;      // sums_before_: of the last complete step
-  Sums sums_earlier_;            // of the step before that
   double held_at_ = 0.0;         // the time at which temperatures are held: the end of the step
 };
 
