@@ -70,23 +70,25 @@ template <class Wide, class Law, class Number>
       Wide::parameters[k].member.varying_in(own) = given;
     }
   if (b.tables) look_up(own, b);
+  int varying[parameter_count<Law>], count = 0;
+  for (int k = 0; k < parameter_count<Law>; ++k)
+    if (Wide::parameters[k].member.may_vary() && b.varies(k)) varying[count++] = k;
   if constexpr (requires { law.conflict(); }) {
     unsigned fit = 0;
+    Law here = law;
     for (int lane = 0; lane < lanes_of<V>; ++lane) {
-      Law here = law;
-      for (int k = 0; k < parameter_count<Law>; ++k)
-        if (Wide::parameters[k].member.may_vary() && b.varies(k))
-          Law::parameters[k].member.set(here, lane_of(Wide::parameters[k].member.varying_in(own), lane));
+      for (int j = 0; j < count; ++j)
+        Law::parameters[varying[j]].member.set(
+            here, lane_of(Wide::parameters[varying[j]].member.varying_in(own), lane));
       fit |= here.conflict() ? 0U : 1U << lane;
     }
     good = good & mask_from<V>(fit);
   }
   if (any(!good))
-    for (int k = 0; k < parameter_count<Law>; ++k)
-      if (Wide::parameters[k].member.may_vary() && b.varies(k)) {
-        V& value = Wide::parameters[k].member.varying_in(own);
-        value = select(good, value, V(Law::parameters[k].member.get(law)));
-      }
+    for (int j = 0; j < count; ++j) {
+      V& value = Wide::parameters[varying[j]].member.varying_in(own);
+      value = select(good, value, V(Law::parameters[varying[j]].member.get(law)));
+    }
   return good;
 }
 
