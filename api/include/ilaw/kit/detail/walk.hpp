@@ -103,13 +103,15 @@ class batch_walk {
       if (!n.listed && stays(a, components))
         return {values + n.first * a.node_stride, a.component_stride, components,
                 a.node_stride != 1 ? components : 0};
-    prefetch_block(values, a.node_stride, a.component_stride, n);
-    if (components == 3)
-      gather_three(values, a.node_stride, a.component_stride, n, copy);
-    else
-      for (int c = 0; c < components; ++c)
-        gather_column(values + c * a.component_stride, a.node_stride, n, copy + c * block_nodes);
+    gather_components(values, a, components, n, copy);
     return {copy, block_nodes, components, 0};
+  }
+  [[gnu::noinline]] static void gather_components(const Host* values, const ilaw_input& a, int components,
+                                                  const node_range& n, Number* copy) {
+    prefetch_block(values, a.node_stride, a.component_stride, n);
+    if (components == 3) return gather_three(values, a.node_stride, a.component_stride, n, copy);
+    for (int c = 0; c < components; ++c)
+      gather_column(values + c * a.component_stride, a.node_stride, n, copy + c * block_nodes);
   }
   const Number* gather_scalar(const ilaw_input& a, const node_range& n, Number* copy) const {
     return gather(a, 1, n, copy).at;
@@ -141,11 +143,13 @@ class batch_walk {
   }
   void scatter(const ilaw_output& a, const array<Number>& aimed, const node_range& n,
                const Number* copy) const {
-    if (aimed.at != copy) return;
-    Host* const values = numbers_in<Host>(a);
+    if (aimed.at == copy) scatter_components(numbers_in<Host>(a), a, aimed.count, n, copy);
+  }
+  [[gnu::noinline]] static void scatter_components(Host* values, const ilaw_output& a, int components,
+                                                   const node_range& n, const Number* copy) {
     prefetch_block(values, a.node_stride, a.component_stride, n);
-    if (aimed.count == 3) return scatter_three(values, a.node_stride, a.component_stride, n, copy);
-    for (int c = 0; c < aimed.count; ++c)
+    if (components == 3) return scatter_three(values, a.node_stride, a.component_stride, n, copy);
+    for (int c = 0; c < components; ++c)
       scatter_column(values + c * a.component_stride, a.node_stride, n, copy + c * block_nodes);
   }
 
