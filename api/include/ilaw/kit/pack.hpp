@@ -101,14 +101,6 @@ ILAW_KIT_COMPARE(is_equal, ==, _CMP_EQ_OQ)
 ILAW_KIT_COMPARE(is_different, !=, _CMP_NEQ_UQ)
 #undef ILAW_KIT_COMPARE
 
-ILAW_KIT_INLINE one_mask are_different(one_bits a, one_bits b) {
-#if defined(__AVX512F__)
-  return _mm512_cmpneq_epi64_mask((__m512i)a, (__m512i)b);
-#else
-  return a != b;
-#endif
-}
-
 ILAW_KIT_INLINE one larger_of(one a, one b) {
 #if defined(__AVX512F__)
   return (one)_mm512_max_pd((__m512d)a, (__m512d)b);

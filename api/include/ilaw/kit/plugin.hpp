@@ -3,7 +3,7 @@
 #pragma once
 
 #if defined(ILAW_KIT_DEVICE)
-#include <ilaw/kit/device/plugin.hpp>
+#include <ilaw/kit/device/kernel.hpp>
 #else
 
 #ifndef ILAW_BUILDING_PLUGIN

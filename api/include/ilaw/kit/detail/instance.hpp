@@ -5,8 +5,8 @@
 #include <ilaw/kit/detail/describe.hpp>
 #include <ilaw/kit/detail/dispatch.hpp>
 #include <ilaw/kit/detail/float_environment.hpp>
-#include <ilaw/kit/detail/forms.hpp>
 #include <ilaw/kit/detail/kernel.hpp>
+#include <ilaw/kit/detail/law_on_packs.hpp>
 #include <ilaw/kit/detail/parameters.hpp>
 #include <ilaw/kit/detail/walk.hpp>
 

@@ -10,9 +10,7 @@
 
 #include <ilaw/kit/detail/law_on_packs.hpp>
 #include <ilaw/kit/detail/load_node.hpp>
-#include <ilaw/kit/detail/node_state.hpp>
-#include <ilaw/kit/detail/stable_step.hpp>
-#include <ilaw/kit/detail/store_heat.hpp>
+#include <ilaw/kit/detail/step_outputs.hpp>
 #include <ilaw/kit/node.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/parameter_range.hpp>
 #include <ilaw/kit/law.hpp>
 #include <ilaw/sized.hpp>
 

@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/instance_base.hpp>
-#include <ilaw/kit/detail/window_block.hpp>
+#include <ilaw/kit/detail/batch_checks.hpp>
+#include <ilaw/kit/detail/block_copies.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 

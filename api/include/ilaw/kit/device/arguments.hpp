@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/forms.hpp>
+#include <ilaw/kit/detail/law_on_packs.hpp>
 #include <ilaw/kit/detail/solver_kernel.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {

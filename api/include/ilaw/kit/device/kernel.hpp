@@ -143,7 +143,7 @@ ILAW_KIT_INLINE bool take_parameters_at(Law& law, const device_arguments<Law>& a
     const device_array& given = a.parameters[k];
     if (!given.at) return;
     const auto value = static_cast<double>(static_cast<const Number*>(given.at)[node * given.node_stride]);
-    constexpr parameter_range range = range_of(Law::parameters[k]);
+    constexpr parameter_range range = Law::parameters[k].range();
     good = good & range.has(value);
     Law::parameters[k].member.set(own, value);
   };
@@ -250,3 +250,18 @@ ILAW_KIT_INLINE void run_laws(const void* block, std::int64_t k) {
 }
 
 }  // namespace ilaw::kit::detail
+
+// The entry of a law library as a device's compiler sees it.
+#define ILAW_KIT_KERNEL(numbers, frame, form, part)                                                          \
+  extern "C"                                                                                                 \
+      __attribute__((global)) void ilaw_##numbers##_##frame##_##form##_##part(ilaw_kit_device_block block) { \
+    ilaw_kit_device_run<ILAW_KIT_DEVICE_VARIANT(numbers, frame, form, part)>(&block);                        \
+  }
+#define ILAW_PLUGIN(name, version, vendor, licence, ...)                                          \
+  using ilaw_kit_device_block = ilaw::kit::detail::device_block_of<__VA_ARGS__>;                  \
+  template <ilaw::kit::detail::device_variant Variant>                                            \
+  ILAW_KIT_INLINE void ilaw_kit_device_run(const void* block) {                                   \
+    ilaw::kit::detail::run_laws<Variant, __VA_ARGS__>(block, ilaw::kit::detail::thread_number()); \
+  }                                                                                               \
+  ILAW_KIT_DEVICE_KERNELS(ILAW_KIT_KERNEL)                                                        \
+  _Pragma("clang force_cuda_host_device end")
