@@ -51,9 +51,6 @@ struct instance_base {
   }
 };
 
-// An impulse times this must be finite.
-constexpr double impulse_guard(bool is_float) { return is_float ? 0x1p898 : 4.0; }
-
 template <class Number, class Array>
 auto numbers_in(const Array& a) {
   if constexpr (std::is_same_v<Number, float>)
@@ -73,6 +70,24 @@ inline bool wants_balance(const instance_base& made, const ilaw_batch& b) {
   for (std::uint32_t k = 0; b.amounts && k < made.amount_count; ++k)
     if (!is_absent(made, b.amounts[k])) return true;
   return false;
+}
+
+// Options of a view of a batch that its arrays do not decide.
+inline view_options options_of(const instance_base& made, const ilaw_batch& b, std::int64_t count) {
+  return {.count = count,
+          .step = {b.time, b.velocity_step, b.position_step, 1.0 / b.position_step},
+          .impulse_guard = made.numbers == ILAW_NUMBERS_FLOAT ? 0x1p898 : 4.0,
+          .dimension = static_cast<int>(made.dimension),
+          .tangents_from = made.tangents_from(),
+          .is_scalar = made.delassus_numbers() == 1,
+          .reads_previous = (made.inputs & ILAW_INPUT_V_PREVIOUS) != 0,
+          .frame_follows = made.frame_follows,
+          .varying = made.per_node_count > 0,
+          .in_memory = false,
+          .moves = false,
+          .has_balance = false,
+          .has_amounts = false,
+          .tables = made.node_tables};
 }
 
 // An array of numbers that are not the setup's, or with both pointers.

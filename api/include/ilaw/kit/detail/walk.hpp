@@ -255,7 +255,6 @@ class batch_walk {
 
   void open_inputs(view<Number>& v, const node_range& n) {
     v.v_free = gather(b_.v_free, d_, n, s_.v_free);
-    v.reads_previous = made_.inputs & ILAW_INPUT_V_PREVIOUS;
     const bool has_balance = wants_balance(made_, b_);
     const std::uint32_t read = made_.inputs | (has_balance ? made_.balance_inputs : 0U);
     if (v.reads_previous || has_balance) v.v_previous = gather(b_.v_previous, d_, n, s_.v_previous);
@@ -294,15 +293,7 @@ class batch_walk {
   bool status_stays(const node_range& n) const { return !n.listed && b_.status_stride == 1; }
   void run_part(const node_range& n, run_function loop, const void* law, tally& all) {
     view<Number> v{};
-    v.count = n.count;
-    v.step = {b_.time, b_.velocity_step, b_.position_step, 1.0 / b_.position_step};
-    v.impulse_guard = impulse_guard(std::is_same_v<Host, float>);
-    v.dimension = d_;
-    v.tangents_from = made_.tangents_from();
-    v.is_scalar = made_.delassus_numbers() == 1;
-    v.frame_follows = made_.frame_follows;
-    v.varying = made_.per_node_count > 0;
-    v.tables = made_.node_tables;
+    static_cast<view_options&>(v) = options_of(made_, b_, n.count);
     v.in_memory = std::is_same_v<Host, double> && n.count >= prefetch_from;
     open_inputs(v, n);
     open_outputs(v, n);

@@ -97,18 +97,8 @@ ILAW_KIT_INLINE std::int64_t node_of(const device_options& a, std::int64_t k) {
 template <class Law, class Number>
 ILAW_KIT_INLINE view<at_node<Law, Number>> view_of(const device_arguments<Law>& a, std::int64_t node) {
   view<at_node<Law, Number>> v{};
+  static_cast<view_options&>(v) = a;
   v.count = 1;
-  v.step = a.step;
-  v.impulse_guard = a.impulse_guard;
-  v.dimension = a.dimension;
-  v.tangents_from = a.tangents_from;
-  v.is_scalar = a.delassus_numbers == 1;
-  v.reads_previous = a.reads_previous;
-  v.frame_follows = a.frame_follows;
-  v.varying = a.varying;
-  v.moves = a.moves;
-  v.has_balance = a.has_balance;
-  v.has_amounts = a.has_amounts;
   v.v_free = array_at<const Number>(a.v_free, node, a.dimension);
   v.v_previous = array_at<const Number>(a.v_previous, node, a.dimension);
   v.normal = array_at<const Number>(a.normal, node, a.dimension);
