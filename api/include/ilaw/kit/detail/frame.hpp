@@ -7,8 +7,6 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// Largest | |n|^2 - 1 | accepted: normals that went through single precision pass.
-inline constexpr double unit_tolerance = 1e-6;
 inline constexpr double unit_component = 0x1.279a74590331cp-1;  // of (1, 1, 1)/sqrt 3, where there is no node
 
 template <class V>
