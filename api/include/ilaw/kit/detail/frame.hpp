@@ -7,9 +7,6 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// Largest | |n|^2 - 1 | accepted: normals that went through single precision pass.
-inline constexpr double unit_tolerance = 1e-6;
-
 template <class V>
 ILAW_KIT_INLINE mask_of<V> is_unit(axis<V> a) {
   return absolute(dot(a, a) - 1.0) <= unit_tolerance;
