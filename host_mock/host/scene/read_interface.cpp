@@ -163,7 +163,7 @@ std::unique_ptr<Interface> read_interface(std::size_t number, const Scene& scene
     InterfaceSetup setup = read_setup(interface, number, scene, own, pointer);
     setup.has_driven_nodes = find_driven(setup, scene, pointer + "/nodes");
     auto made = std::make_unique<Interface>(std::move(setup), *scene.model);
-    check_obstacle_temperature(*made, pointer);
+    check_temperatures_read(*made, scene, pointer);
     return made;
   } catch (const ParameterError& error) {
     const std::string whose =

@@ -277,7 +277,8 @@ struct kernel {
     if constexpr (gives_heat<Law>)
       if (b.has_amounts)
         store_heat(b, i, own_amount_count<Law>, zero_unless(!(status == status::free), parts[0]),
-                   zero_unless(known, n.impulse), mean, law.heat_partition, law.wear_coefficient);
+                   zero_unless(known, n.impulse), mean, law.heat_partition, n.rubbing * law.wear_coefficient,
+                   n.rubbing == 1.0);
     if (b.energy.at) store_numbers(parts, b.energy, i);
   }
 
