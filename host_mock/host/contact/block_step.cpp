@@ -70,12 +70,10 @@ class BlockWalk {
   Eigen::Index first_dof(std::ptrdiff_t i) const { return Eigen::Index{D} * node_[i]; }
 
   void locate() {
-    if constexpr (Partnered)
-      locate_partners();
-    else if (meets_plane())
+    if (meets_plane())
       locate_at_plane();
     else
-      locate_at_obstacle();
+      locate_each();
     if constexpr (Turns) find_turns();
     const InterfaceSetup& setup = step_.setup;
     if (setup.common_gap_offset != 0.0 || !setup.own_gap_offsets.empty())
@@ -83,11 +81,17 @@ class BlockWalk {
   }
   int node_index(std::ptrdiff_t i) const { return at_.node_index[contact(i)]; }
 
-  void locate_at_obstacle() {
-    std::array<std::int32_t, block_size> node_indices;
-    for (std::ptrdiff_t i = 0; i < count_; ++i) node_indices[i] = node_index(i);
-    step_.setup.counterpart->locate(node_indices.data(), count_, step_.step.u, step_.step.time,
-                                    {gap_.data(), normal_.data()});
+  void locate_each() {
+    for (std::ptrdiff_t i = 0; i < count_; ++i) {
+      const ContactPoint point =
+          step_.setup.counterpart->contact_point(node_index(i), step_.step.u, step_.step.time);
+      gap_[i] = point.gap;
+      for (int c = 0; c < D; ++c) normal_[D * i + c] = point.normal[c];
+      if constexpr (Partnered) {
+        at_.point[contact(i)] = point;
+        at_.delassus[contact(i)] = point.delassus(step_.inverse_mass, D, node_[i]);
+      }
+    }
   }
 
   // All nodes have the plane's normal: it is written once.
@@ -107,16 +111,6 @@ class BlockWalk {
         turn_before_[D * i + c] = turn.before[c];
         turn_after_[D * i + c] = turn.after[c];
       }
-    }
-  }
-
-  void locate_partners() {
-    for (std::ptrdiff_t i = 0; i < count_; ++i) {
-      ContactPoint& point = at_.point[contact(i)];
-      point = step_.setup.counterpart->contact_point(node_index(i), step_.step.u, step_.step.time);
-      gap_[i] = point.gap;
-      for (int c = 0; c < D; ++c) normal_[D * i + c] = point.normal[c];
-      at_.delassus[contact(i)] = point.delassus(step_.inverse_mass, D, node_[i]);
     }
   }
 

@@ -24,6 +24,12 @@ std::vector<double> shares_of(const NodeSet& set, const std::string& pointer) {
   return shares;
 }
 
+std::vector<double> masses_of(const std::vector<int>& nodes, const Model& model) {
+  std::vector<double> masses;
+  for (const int node : nodes) masses.push_back(model.mass()[Eigen::Index{node} * model.dimension()]);
+  return masses;
+}
+
 // A factor over time; 1 where none is given.
 Table read_factor(const json& load, const std::string& pointer) {
   if (!load.contains("history")) return {{0.0}, {Vector::Ones(1)}};
@@ -77,9 +83,9 @@ std::unique_ptr<Load> read_load(const json& load, const Model& model, const std:
   const NodeSet set = select_nodes(load.value("nodes", json("all")), model, pointer + "/nodes");
   if (type == "temperature" || type == "heat_flux") return read_heat_load(load, model, set, pointer);
   if (type == "gravity")
-    return std::make_unique<Gravity>(model, set.nodes,
-                                     read_vector(load["acceleration"], d, pointer + "/acceleration"),
-                                     read_factor(load, pointer));
+    return std::make_unique<Force>(set.nodes, masses_of(set.nodes, model),
+                                   read_vector(load["acceleration"], d, pointer + "/acceleration"),
+                                   read_factor(load, pointer));
   if (type == "force") {
     const std::vector<double> shares = load.value("total", false)
                                            ? shares_of(set, pointer + "/nodes")

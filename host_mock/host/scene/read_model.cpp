@@ -6,7 +6,7 @@
 #include "model/box.hpp"
 #include "model/model.hpp"
 #include "model/points.hpp"
-#include "model/rotating_spring.hpp"
+#include "model/springs.hpp"
 #include "scene/json_text.hpp"
 #include "scene/packed_points.hpp"
 #include "scene/read_meshes.hpp"
@@ -47,11 +47,14 @@ std::unique_ptr<Model> read_points(const json& model) {
   return std::make_unique<Points>(d, points);
 }
 
+// A point on a spring to the origin.
 std::unique_ptr<Model> read_rotating_spring(const json& model) {
-  return std::make_unique<RotatingSpring>(SpringSetup{
-      model["mass"].get<double>(), model["stiffness"].get<double>(), model["length"].get<double>(),
-      model.value("area", 1.0), read_vector(model["position"], 2, "/model/position"),
-      read_vector_or_zero(model, "velocity", 2, "/model")});
+  const PointMass point{model["mass"].get<double>(), model.value("area", 1.0),
+                        read_vector(model["position"], 2, "/model/position"),
+                        read_vector_or_zero(model, "velocity", 2, "/model"), Vector()};
+  const Spring spring{
+      0, -1, Vector::Zero(2), model["stiffness"].get<double>(), 0.0, model["length"].get<double>()};
+  return std::make_unique<Sprung>(std::make_unique<Points>(2, std::vector{point}), std::vector{spring});
 }
 
 // Bodies are named in a scene, or bar0, bar1 ...

@@ -73,15 +73,10 @@ NodeSet listed(const json& numbers, const Model& model, const std::string& point
   return part_of(model.sets().at("all"), nodes.indices());
 }
 
-Vector position_of(const Model& model, int node) {
-  return model.position().segment(node * model.dimension(), model.dimension());
-}
-
 int nearest(const Vector& x, const Model& model) {
   int best = 0;
   for (int node = 1; node < model.node_count(); ++node)
-    if ((position_of(model, node) - x).squaredNorm() < (position_of(model, best) - x).squaredNorm())
-      best = node;
+    if ((model.position(node) - x).squaredNorm() < (model.position(best) - x).squaredNorm()) best = node;
   return best;
 }
 
@@ -108,7 +103,7 @@ NodeSet inside(const json& selection, const Model& model, const std::string& poi
   const Vector high = read_vector(selection["box"][1], model.dimension(), pointer + "/box/1");
   std::vector<std::size_t> indices;
   for (std::size_t k = 0; k < set.nodes.size(); ++k) {
-    const Vector x = position_of(model, set.nodes[k]);
+    const Vector x = model.position(set.nodes[k]);
     if ((x.array() >= low.array()).all() && (x.array() <= high.array()).all()) indices.push_back(k);
   }
   if (indices.empty()) throw mistake(pointer + "/box", "no node inside", "at least one");
