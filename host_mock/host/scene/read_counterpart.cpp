@@ -4,7 +4,6 @@
 #include "contact/counterpart.hpp"
 #include "contact/mesh_surface.hpp"
 #include "scene/json_text.hpp"
-#include "scene/selection.hpp"
 #include "scene/values.hpp"
 
 #include <algorithm>

@@ -4,7 +4,6 @@
 #include "model/load.hpp"
 #include "model/pressure.hpp"
 #include "scene/json_text.hpp"
-#include "scene/selection.hpp"
 #include "scene/values.hpp"
 
 #include <numeric>

@@ -4,7 +4,6 @@
 #include "base/files.hpp"
 #include "base/words.hpp"
 #include "scene/json_text.hpp"
-#include "scene/mesh_file.hpp"
 #include "scene/values.hpp"
 
 #include <array>

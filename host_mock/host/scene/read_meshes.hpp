@@ -23,4 +23,9 @@ std::string line_of_mesh(const nlohmann::json& described);
 // Sizes and checksums of the files, by which a checkpoint knows its meshes.
 nlohmann::json marks_of_meshes(const nlohmann::json& model, const std::filesystem::path& scene_file);
 
+// Reads a .vtu or a legacy .vtk file and checks it: all indices are in range, all cells have a type that
+// MeshData knows. VTK's readers crash on some damaged files, so they run in a process of their own. Throws
+// MeshError.
+MeshData read_mesh_file(const std::filesystem::path& file);
+
 }  // namespace ilaw::host

@@ -3,7 +3,6 @@
 
 #include "model/springs.hpp"
 #include "scene/json_text.hpp"
-#include "scene/selection.hpp"
 #include "scene/values.hpp"
 
 #include <cstddef>
