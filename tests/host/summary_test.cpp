@@ -1,7 +1,7 @@
 // Results of a run: the summary, and the columns of the history.
 #include "run_result.hpp"
 
-#include "base/stopwatch.hpp"
+#include "base/clock.hpp"
 
 #include <chrono>
 

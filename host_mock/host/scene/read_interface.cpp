@@ -5,7 +5,6 @@
 #include "scene/arguments.hpp"
 #include "scene/json_text.hpp"
 #include "scene/scene.hpp"
-#include "scene/selection.hpp"
 #include "scene/values.hpp"
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 
 #include "scene/json_text.hpp"
 #include "scene/readers.hpp"
-#include "scene/selection.hpp"
 #include "scene/validation.hpp"
+#include "scene/values.hpp"
 #include "scene/warnings.hpp"
 
 #include <algorithm>
