@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bodies.hpp"
 
+#include "doubles.hpp"
 #include "ranks.hpp"
 #include "sizes.hpp"
 
@@ -15,9 +16,9 @@ const char* Bodies::complaint(const ilaw_bodies* given) {
   if (bodies.dimension < 1 || bodies.dimension > 3) return "dimension is not 1, 2 or 3";
   if (bodies.owned_count < 0 || bodies.count < bodies.owned_count) return "counts of bodies are wrong";
   if (bodies.count >= INT32_MAX) return "count is above 2^31 - 2";
+  if (const char* reason = complaint_of_floats(bodies)) return reason;
   for (const ilaw_output* a : {&bodies.velocity, &bodies.spin, &bodies.impulse, &bodies.angular_impulse})
-    if (a->floats || collides(*a, bodies.count, bodies.dimension))
-      return "an output of bodies has floats or a stride of 0";
+    if (collides(*a, bodies.count, bodies.dimension)) return "an output of bodies has a stride of 0";
   if (bodies.count == 0) return nullptr;
   if (!bodies.inverse_mass.values || !bodies.v_free.values) return "inverse_mass or v_free is missing";
   if (!bodies.inverse_inertia.values) return nullptr;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contacts.hpp"
 
+#include "doubles.hpp"
 #include "sizes.hpp"
 
 #include <ilaw/arrays.hpp>
@@ -65,9 +66,7 @@ const char* Contacts::complaint() const {
     return "delassus_form is neither scalar, transverse, transverse_spin nor full";
   if (theirs_.node_count < 0) return "node_count is negative";
   if (theirs_.node_count >= INT32_MAX) return "node_count is above 2^31 - 2";
-  if (theirs_.impulse.floats || theirs_.energy.floats || theirs_.state_in.floats ||
-      theirs_.state_out.floats || theirs_.moment.floats)
-    return "an array of a batch has floats; expected doubles";
+  if (const char* reason = complaint_of_floats(given_, theirs_)) return reason;
   if (theirs_.index || theirs_.index64) return "contacts have no list of nodes";
   if (given_.weight_size > 1 && given_.weight_size != dimension_ * dimension_)
     return "weight_size is not 0, 1 or d * d";
@@ -97,6 +96,7 @@ const char* Contacts::complaint_of_law(const Bodies& bodies) {
   info_ = {};
   info_.struct_size = sizeof info_;
   if (given_.law->info(given_.instance, &info_) != ILAW_OK) return "info refuses the instance";
+  if (const char* reason = complaint_of_floats(theirs_, info_)) return reason;
   if (!(info_.inputs & ILAW_INPUT_NORMAL))
     return "the instance is for the local frame; expected the global one";
   if (theirs_.energy.values && !(given_.law->outputs & ILAW_OUTPUT_ENERGY))
@@ -113,8 +113,7 @@ const char* Contacts::complaint_of_law(const Bodies& bodies) {
   if (collides(theirs_.state_out, theirs_.node_count, static_cast<std::int64_t>(info_.state_size)))
     return "state_out has a stride of 0";
   for (std::uint32_t a = 0; theirs_.amounts && a < info_.amount_count; ++a)
-    if (theirs_.amounts[a].floats || collides(theirs_.amounts[a], theirs_.node_count, 1))
-      return "an array of amounts has floats or a stride of 0";
+    if (collides(theirs_.amounts[a], theirs_.node_count, 1)) return "an array of amounts has a stride of 0";
   return nullptr;
 }
 

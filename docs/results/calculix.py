@@ -6,7 +6,6 @@
 Both codes have the same hexahedra, one across, and nu = 0: the closed forms are those of bars.
 """
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
 import csv
 import json
 import resource
@@ -15,12 +14,9 @@ import tempfile
 from functools import partial
 from pathlib import Path
 
-import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
-
-matplotlib.use("Agg")
-matplotlib.rcParams.update({"svg.hashsalt": "ilaw", "axes.spines.top": False, "axes.spines.right": False})
-import matplotlib.pyplot as plt  # noqa: E402
+from case_script import parser_of, save
 
 # Strains of 0.2 % at most: small displacements, in ccx (without NLGEOM) as in ilaw.
 YOUNG, DENSITY, GRAVITY, SPEED, GAP = 900.0, 1.0, 0.1, 0.1, 0.005
@@ -167,11 +163,7 @@ def ilaw(program, case, elements, h):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program", metavar="ILAW", type=Path)
-    parser.add_argument("--picture", metavar="FILE", type=Path)
-    given = parser.parse_args()
-    program = given.program.resolve()
+    given = parser_of(__doc__).parse_args()
     print("| case | elements a body | contact | step | steps | error of displacement | error of velocity | CPU |\n" + "| --- " * 8 + "|")
     shown = {}
     for case, meshes in ((Impact(), (20, 80)), (Stack(), (8, 32))):
@@ -179,7 +171,7 @@ def main():
             crossing = case.length / elements / WAVE  # the critical step of lumped masses
             runs = {"CalculiX, massless": (partial(calculix, "MASSLESS"), (0.55, 0.5, 0.25)),
                     "CalculiX, penalty": (partial(calculix, "NODE TO SURFACE"), (0.5,)),
-                    "law contact": (partial(ilaw, program), (0.95, 0.5))}  # fmt: skip
+                    "law contact": (partial(ilaw, given.program), (0.95, 0.5))}  # fmt: skip
             for name, (run, fractions) in runs.items():
                 for fraction in fractions:
                     h = float(f"{fraction * crossing:.3g}")
@@ -208,8 +200,7 @@ def picture(shown, file):
         plot.set_title({"impact": "two bars: the face of the moving one", "stack": "stack: its top"}[key[0]], fontsize=9)
     axes[0].set_ylabel("velocity [m/s]")
     axes[0].legend(fontsize=8, frameon=False)
-    figure.tight_layout()
-    figure.savefig(file, metadata={"Date": None} if file.suffix == ".svg" else None)
+    save(figure, file)
 
 
 if __name__ == "__main__":

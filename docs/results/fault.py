@@ -7,7 +7,6 @@ The values are those of the benchmark SCEC TPV3 (Harris et al. 2009), two-dimens
 blocks, initial tractions as forces on them, so that displacements are those since the start of the rupture.
 """
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
 import csv
 import json
 import subprocess
@@ -15,12 +14,9 @@ import tempfile
 import time
 from pathlib import Path
 
-import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
-
-matplotlib.use("Agg")
-matplotlib.rcParams.update({"svg.hashsalt": "ilaw", "axes.spines.top": False, "axes.spines.right": False})
-import matplotlib.pyplot as plt  # noqa: E402
+from case_script import parser_of, save
 
 # Pa, m, kg/m^3, m/s.
 PRESSURE, SHEAR, NUCLEATION_SHEAR, NUCLEATION = 120e6, 70e6, 81.6e6, 1500.0
@@ -86,18 +82,16 @@ def arrivals(program, size, cfl):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program", metavar="ILAW", type=Path)
+    parser = parser_of(__doc__)
     parser.add_argument("--sizes", type=float, nargs="+", default=[600, 300, 150])
     parser.add_argument("--steps", type=float, nargs="+", default=[0.9, 0.5, 0.23, 0.11], help="fractions of the critical step")
-    parser.add_argument("--picture", metavar="FILE", type=Path)
     given = parser.parse_args()
     print("| element [m] | step / critical | steps | " + " | ".join(f"{x / 1e3:g} km" for x in PLACES) + " | time |")
     print("| --- " * (4 + len(PLACES)) + "|")
     curves = {}
     for size in given.sizes:
         for cfl in given.steps:
-            x, found, steps, seconds = arrivals(given.program.resolve(), size, cfl)
+            x, found, steps, seconds = arrivals(given.program, size, cfl)
             curves[size, cfl] = x, found
             at = np.interp(PLACES, x, found)
             print(f"| {size:g} | {cfl:g} | {steps} | " + " | ".join(f"{a:.3f}" for a in at) + f" | {seconds:.0f} s |", flush=True)
@@ -116,8 +110,7 @@ def picture(curves, given):
     plot.set_xlabel("distance along the fault [km]")
     plot.set_ylabel("arrival of the rupture [s]")
     plot.legend(fontsize=8, frameon=False)
-    figure.tight_layout()
-    figure.savefig(given.picture, metadata={"Date": None} if given.picture.suffix == ".svg" else None)
+    save(figure, given.picture)
 
 
 if __name__ == "__main__":

@@ -8,18 +8,13 @@ Salman (2001), Powder Technology 120, an alumina sphere on glass; data of the sp
 Matter 13, test 4.
 """
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
 import math
-from pathlib import Path
 
-import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
+from case_script import parser_of, save
 
 import ilaw
-
-matplotlib.use("Agg")
-matplotlib.rcParams.update({"svg.hashsalt": "ilaw", "axes.spines.top": False, "axes.spines.right": False})
-import matplotlib.pyplot as plt  # noqa: E402
 
 MEASURED = {5.17: 0.948, 10.2: 0.687, 15: 0.624, 20: 0.616, 25: 0.634, 30: 0.684, 35: 0.737, 40: 0.781, 50: 0.845,
             60: 0.893, 70: 0.932, 80: 0.966, 85: 0.983}  # fmt: skip
@@ -78,9 +73,7 @@ def rigid(angle):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--picture", metavar="FILE", type=Path)
-    given = parser.parse_args()
+    given = parser_of(__doc__, runs_scenes=False).parse_args()
     resolutions = (17, 53, 170)
     print("| angle | measured | penalty, " + " | ".join(f"{n} steps" for n in resolutions) + " | error | rigid Coulomb | its error |")
     print("| --- " * (5 + len(resolutions)) + "|")
@@ -105,8 +98,7 @@ def picture(file):
     plot.set_ylabel("rebound / impact velocity\nalong the plate")
     plot.set_ylim(0.5, 1.02)
     plot.legend(fontsize=8, frameon=False, loc="lower right")
-    figure.tight_layout()
-    figure.savefig(file, metadata={"Date": None} if file.suffix == ".svg" else None)
+    save(figure, file)
 
 
 if __name__ == "__main__":

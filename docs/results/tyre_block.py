@@ -1,24 +1,21 @@
 #!/usr/bin/env python3
-"""A tyre block slides over a road, at falling temperatures and at speeds over three decades: master curve, heat, wear.
+"""A tyre block slides over a road at six temperatures and six speeds: master curve, heat, and wear.
 
     docs/results/tyre_block.py build/release/bin/ilaw --picture docs/results/img/tyre_block.png      (laws: ILAW_PATH)
 
-The scene is host_mock/scenes/tyre_block.json; each run has its own temperature and speed.
+The scene is host_mock/scenes/tyre_block.json with the initial temperature of the block and the speed of the road of
+each run. Prints the table of docs/results/tyre_block.md at 0.3 m/s; the other speeds are run for the picture alone.
 """
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
 import csv
 import json
 import subprocess
 import tempfile
 from pathlib import Path
 
-import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
-
-matplotlib.use("Agg")
-matplotlib.rcParams.update({"svg.hashsalt": "ilaw", "axes.spines.top": False, "axes.spines.right": False})
-import matplotlib.pyplot as plt  # noqa: E402
+from case_script import parser_of, save
 
 SCENE = Path(__file__).resolve().parents[2] / "host_mock" / "scenes" / "tyre_block.json"
 TEMPERATURES = (333.0, 313.0, 303.0, 293.0, 283.0, 273.0)
@@ -104,18 +101,13 @@ def picture(runs, file):
     heating.set(xlabel="time [s]", ylabel=f"rise at {TABLE_SPEED:g} m/s [K]")
     reduced.legend(fontsize=7, frameon=False, loc="upper left")
     heating.legend(fontsize=7, frameon=False)
-    figure.tight_layout()
-    figure.savefig(file, dpi=100, metadata={"Date": None} if file.suffix == ".svg" else {"Software": None})
+    save(figure, file)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program", metavar="ILAW", type=Path)
-    parser.add_argument("--picture", metavar="FILE", type=Path)
-    given = parser.parse_args()
-    program = given.program.resolve()
+    given = parser_of(__doc__).parse_args()
     speeds = SPEEDS if given.picture else (TABLE_SPEED,)
-    runs = {(temperature, speed): run(program, temperature, speed) for temperature in TEMPERATURES for speed in speeds}
+    runs = {(temperature, speed): run(given.program, temperature, speed) for temperature in TEMPERATURES for speed in speeds}
     print("| start [K] | surface [K] | friction | nodes off the page | heat [J] | in the block [J] | wear [nm] | "
           "heat / friction - 1 | heat | energy |")  # fmt: skip
     print("| --- " * 10 + "|")

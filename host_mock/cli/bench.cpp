@@ -5,7 +5,6 @@
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "base/running_law.hpp"
-#include "bench/bench_files.hpp"
 #include "bench/bench_law.hpp"
 #include "bench/measure.hpp"
 #include "cli/guard.hpp"

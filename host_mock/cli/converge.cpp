@@ -6,7 +6,6 @@
 #include "base/files.hpp"
 #include "cli/guard.hpp"
 #include "study/convergence.hpp"
-#include "study/convergence_files.hpp"
 
 #include <cstdio>
 #include <filesystem>

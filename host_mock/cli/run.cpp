@@ -9,7 +9,6 @@
 #include "base/large_pages.hpp"
 #include "base/words.hpp"
 #include "cli/guard.hpp"
-#include "cli/progress.hpp"
 #include "cli/terminal.hpp"
 #include "model/elements.hpp"
 #include "plot/gnuplot.hpp"

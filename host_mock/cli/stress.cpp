@@ -6,7 +6,7 @@
 #include "base/files.hpp"
 #include "cli/commands.hpp"
 #include "cli/guard.hpp"
-#include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 
 #include <cstdio>
 #include <memory>

@@ -8,7 +8,6 @@
 #include "cli/terminal.hpp"
 #include "scene/scene.hpp"
 #include "study/work_precision.hpp"
-#include "study/work_precision_files.hpp"
 
 #include <cmath>
 #include <cstdio>

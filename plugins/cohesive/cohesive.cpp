@@ -2,6 +2,7 @@
 #include "softening.hpp"
 
 #include <ilaw/kit/bond.hpp>
+#include <ilaw/kit/heat.hpp>
 #include <ilaw/kit/plugin.hpp>
 
 namespace {
@@ -29,6 +30,8 @@ struct cohesive : adhesive_bond<cohesive, V> {
   V friction;
   V delay_time;
   V delay_exponent;
+  V heat_partition;
+  V wear_coefficient;
 
   static constexpr law_card card{
       .id = "cohesive",
@@ -106,7 +109,9 @@ struct cohesive : adhesive_bond<cohesive, V> {
        .symbol = "a",
        .doc = "How sharply the damage rate reaches its bound 1/tau_c.",
        .default_value = 1.0,
-       .minimum_excluded = true}};
+       .minimum_excluded = true},
+      heat_partition_parameter(&cohesive::heat_partition),
+      wear_coefficient_parameter(&cohesive::wear_coefficient)};
 
   static constexpr double broken = 1.0;
   static constexpr auto state_variables = bond_variables("damage", "0: intact, 1: broken.");

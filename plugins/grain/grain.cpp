@@ -229,10 +229,10 @@ struct grain {
         {h.t + tangent.softness, h.k, h.j_t, tangent.slip(node, spring, 0.0).tangential_part(),
          node.spin_free.tangential_part(), friction_limit(friction, rubbed),
          friction_limit(rolling_friction, pressure)},
-        turned_motion<V, vector<V>>(node.spin_previous));
+        motion_to_resist<V, vector<V>>(node.spin_previous));
     node.impulse = found.slip.against(node.impulse.n, found.factor);
     node.moment = found.q;
-    node.moment.n = twisting_moment(turned_spin(node.spin_free.n, node.spin_previous.n), h.j_n,
+    node.moment.n = twisting_moment(spin_to_resist(node.spin_free.n, node.spin_previous.n), h.j_n,
                                     friction_limit(twisting_friction, pressure));
     return found.slides;
   }

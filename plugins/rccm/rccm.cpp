@@ -1,5 +1,6 @@
 // RCCM: adhesion that viscosity delays, with contact and friction. See rccm.md for the equations.
 #include <ilaw/kit/bond.hpp>
+#include <ilaw/kit/heat.hpp>
 #include <ilaw/kit/plugin.hpp>
 
 namespace {
@@ -14,6 +15,8 @@ struct rccm : adhesive_bond<rccm, V> {
   V viscosity;
   V friction;
   V initial_intensity;
+  V heat_partition;
+  V wear_coefficient;
 
   static constexpr law_card card{
       .id = "rccm",
@@ -63,7 +66,9 @@ struct rccm : adhesive_bond<rccm, V> {
        .symbol = "beta_0",
        .doc = "Intensity of adhesion at the start; 0: none.",
        .default_value = 1.0,
-       .maximum = 1.0}};
+       .maximum = 1.0},
+      heat_partition_parameter(&rccm::heat_partition),
+      wear_coefficient_parameter(&rccm::wear_coefficient)};
 
   static constexpr double broken = 0.0;
   static constexpr auto state_variables = bond_variables("intensity", "1: intact, 0: no adhesion.");

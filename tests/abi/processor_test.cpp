@@ -1,6 +1,6 @@
 // A level is chosen only where the processor and the operating system have all that a compiler may use of it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ilaw/kit/detail/processor.hpp>
+#include <ilaw/kit/detail/dispatch.hpp>
 
 #include <gtest/gtest.h>
 

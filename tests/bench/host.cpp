@@ -81,8 +81,8 @@ class HostCase {
   HostCase(const Subject* subject, Situation situation, std::size_t count)
       : count_(count), model_(points_of(situation, count)) {
     const NodeSet& all = model_.sets().at("all");
-    loads_.push_back(
-        std::make_unique<Gravity>(model_, all.nodes, acceleration, Table{{0.0}, {Vector::Ones(1)}}));
+    loads_.push_back(std::make_unique<Force>(all.nodes, std::vector<double>(count, 1.0), acceleration,
+                                             Table{{0.0}, {Vector::Ones(1)}}));
     if (subject) add_interface(*subject, all);
     integrator_ = std::make_unique<Integrator>(model_, loads_, interfaces_, dt);
   }

@@ -37,8 +37,8 @@ ilaw_add_wrong_law(rccm_step rccm plugins/rccm/rccm.cpp "viscosity / all.step.ve
                    "viscosity / (all.step.velocity_step > 0.0 ? 0x1p-10 : 0.0)")
 # The moment turns the wrong way in the host's axes.
 ilaw_add_wrong_law(rolling_turned rolling api/include/ilaw/kit/detail/frame.hpp
-                   "const axis<V> w = cross(n, axis<V>{u.x, u.y, u.z});"
-                   "const axis<V> w = cross(axis<V>{u.x, u.y, u.z}, n);")
+                   "cross(frame.n, axis<V>{u.x, u.y, u.z});"
+                   "cross(axis<V>{u.x, u.y, u.z}, frame.n);")
 # Energy without the work of the moment.
 ilaw_add_wrong_law(rolling_work rolling api/include/ilaw/kit/detail/kernel.hpp
                    "along_tangents = along_tangents - 0.5 * (twist + roll);"

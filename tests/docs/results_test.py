@@ -5,10 +5,12 @@ import importlib.util
 import os
 import re
 import shutil
+import sys
 import unittest
 from pathlib import Path
 
 RESULTS = Path(__file__).resolve().parents[2] / "docs/results"
+sys.path.insert(0, str(RESULTS))  # for case_script
 PROGRAM = os.environ["ILAW_PROGRAM"]
 
 

@@ -1,5 +1,5 @@
 // Blocks of hexahedra: patch tests, invariances, consistency of forces and energy.
-#include "model/blocks.hpp"
+#include "model/box.hpp"
 
 #include "host_runner.hpp"
 #include "model/bars.hpp"
@@ -32,14 +32,14 @@ constexpr Kind linear{MaterialLaw::linear, Element::full},
     linear_mean{MaterialLaw::linear, Element::mean_dilatation},
     neo_hookean_mean{MaterialLaw::neo_hookean, Element::mean_dilatation};
 
-Blocks block_of(Kind kind, std::array<int, 3> elements = {4, 3, 2}) {
-  return Blocks({{"b",
-                  {0.5, -1.0, 2.0},
-                  {2.0, 1.2, 0.6},
-                  {0.0, 0.0, 0.0},
-                  elements,
-                  {kind.first, young, poisson, density},
-                  kind.second}});
+Solids block_of(Kind kind, std::array<int, 3> elements = {4, 3, 2}) {
+  return Solids({box_of({"b",
+                         {0.5, -1.0, 2.0},
+                         {2.0, 1.2, 0.6},
+                         {0.0, 0.0, 0.0},
+                         elements,
+                         {kind.first, young, poisson, density},
+                         kind.second})});
 }
 
 Eigen::Matrix3d random_matrix(double size, std::mt19937_64& random) {
@@ -68,7 +68,7 @@ const std::vector<Side> sides{{"b.x_min", {-1, 0, 0}, 0.72}, {"b.x_max", {1, 0, 
 
 // Where no face is named a node offers the length of its area vector: of all faces that meet there.
 TEST(Block, NodesOfTheWholeOfferTheAreasOfAllTheirFaces) {
-  const Blocks block = block_of(linear);
+  const Solids block = block_of(linear);
   std::vector<Eigen::Vector3d> vectors(static_cast<std::size_t>(block.node_count()), Eigen::Vector3d::Zero());
   for (const Side& side : sides) {
     const NodeSet& face = block.sets().at(side.name);
@@ -83,7 +83,7 @@ TEST(Block, NodesOfTheWholeOfferTheAreasOfAllTheirFaces) {
 }
 
 TEST(Block, HasTheMassAndTheFacesOfItsBox) {
-  const Blocks block = block_of(linear);
+  const Solids block = block_of(linear);
   ASSERT_EQ(block.node_count(), 5 * 4 * 3);
   EXPECT_NEAR(block.mass().sum(), 3.0 * density * 2.0 * 1.2 * 0.6, 1e-14);
   EXPECT_GT(block.mass().minCoeff(), 0.0);
@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Element, NeoHookeanBlock, ::testing::Values(neo_hookean
 // their part of its area.
 TEST_P(BlockOf, PassesThePatchTest) {
   std::mt19937_64 random(1);
-  const Blocks block = block_of(GetParam());
+  const Solids block = block_of(GetParam());
   for (int draw = 0; draw < 200; ++draw) {
     const Eigen::Matrix3d G = random_matrix(0.2, random), P = stress(GetParam().first, G);
     Dofs exact = Dofs::Zero(block.mass().size());
@@ -130,7 +130,7 @@ TEST_P(BlockOf, PassesThePatchTest) {
 
 // Pulled along x and free to narrow, a linear block answers with E times strain times area.
 TEST(LinearBlock, HasYoungsModulusInUniaxialTension) {
-  const Blocks block = block_of(linear);
+  const Solids block = block_of(linear);
   const double strain = 1e-3;
   const Eigen::Vector3d strains(strain, -poisson * strain, -poisson * strain);
   const Dofs force = forces(block, linear_field(block, strains.asDiagonal()));
@@ -141,14 +141,14 @@ TEST(LinearBlock, HasYoungsModulusInUniaxialTension) {
 }
 
 TEST_P(BlockOf, FeelsNoForceFromTranslation) {
-  const Blocks block = block_of(GetParam());
+  const Solids block = block_of(GetParam());
   const Dofs u = Eigen::Vector3d(3.0, -1.0, 7.0).replicate(block.node_count(), 1);
   EXPECT_EQ(forces(block, u).cwiseAbs().maxCoeff(), 0.0);
   EXPECT_EQ(block.potential(u), 0.0);
 }
 
 TEST_P(NeoHookeanBlock, FeelsNoForceFromAnyRotation) {
-  const Blocks block = block_of(GetParam());
+  const Solids block = block_of(GetParam());
   for (const double angle : {0.1, 1.0, 3.0}) {
     const Eigen::Matrix3d turn =
         Eigen::AngleAxisd(angle, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
@@ -161,7 +161,7 @@ TEST_P(NeoHookeanBlock, FeelsNoForceFromAnyRotation) {
 // A turn of the deformed body turns its forces with it: f(Q (x + u) - x) = Q f(u).
 TEST_P(NeoHookeanBlock, TurnsItsForcesWithTheBody) {
   std::mt19937_64 random(2);
-  const Blocks block = block_of(GetParam());
+  const Solids block = block_of(GetParam());
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.0, Eigen::Vector3d(1, 1, -3).normalized()).matrix();
   for (int draw = 0; draw < 20; ++draw) {
     const Dofs u = random_field(block, 0.03, random), x = block.position();
@@ -179,7 +179,7 @@ TEST_P(NeoHookeanBlock, TurnsItsForcesWithTheBody) {
 // step.
 TEST_P(BlockOf, HasForcesThatAreTheGradientOfItsPotential) {
   std::mt19937_64 random(3);
-  const Blocks block = block_of(GetParam());
+  const Solids block = block_of(GetParam());
   constexpr double step = 1e-5;
   for (int draw = 0; draw < 50; ++draw) {
     const Dofs u = random_field(block, 0.05, random), direction = random_field(block, 1.0, random);
@@ -194,7 +194,7 @@ TEST_P(BlockOf, HasForcesThatAreTheGradientOfItsPotential) {
 // functions: 2x2x2 points integrate its energy exactly, 1/2 of (lambda + 2 mu) y^2 z^2 + mu (x^2 z^2 + x^2
 // y^2).
 TEST(LinearBlock, HasTheExactEnergyOfATrilinearField) {
-  const Blocks block = block_of(linear);
+  const Solids block = block_of(linear);
   Dofs u = Dofs::Zero(block.mass().size());
   for (int node = 0; node < block.node_count(); ++node)
     u[3 * node] = (block.position().segment<3>(3 * node) - block.position().head<3>()).prod();
@@ -207,7 +207,7 @@ TEST(LinearBlock, HasTheExactEnergyOfATrilinearField) {
 // The same on elements that reach from side to side of b and c: their dilatation y z has the mean b c/4, and
 // what it deviates, in the square b^2 c^2 (1/9 - 1/16), no longer costs bulk modulus.
 TEST(MeanDilatation, HasTheExactEnergyOfATrilinearField) {
-  const Blocks full = block_of(linear, {4, 1, 1}), block = block_of(linear_mean, {4, 1, 1});
+  const Solids full = block_of(linear, {4, 1, 1}), block = block_of(linear_mean, {4, 1, 1});
   Dofs u = Dofs::Zero(block.mass().size());
   for (int node = 0; node < block.node_count(); ++node)
     u[3 * node] = (block.position().segment<3>(3 * node) - block.position().head<3>()).prod();
@@ -219,7 +219,7 @@ TEST(MeanDilatation, HasTheExactEnergyOfATrilinearField) {
 // For small strains both materials are the same, to the square of the strain.
 TEST_P(NeoHookeanBlock, IsLinearElasticForSmallStrains) {
   std::mt19937_64 random(4);
-  const Blocks small = block_of({MaterialLaw::linear, GetParam().second}), block = block_of(GetParam());
+  const Solids small = block_of({MaterialLaw::linear, GetParam().second}), block = block_of(GetParam());
   const Dofs field = random_field(block, 1.0, random);
   std::vector<double> sizes, errors;
   for (const double size : {4e-4, 2e-4, 1e-4}) {
@@ -234,7 +234,7 @@ TEST_P(NeoHookeanBlock, IsLinearElasticForSmallStrains) {
 TEST_P(BlockOf, HasASymmetricStiffnessWithSixRigidMotions) {
   if (GetParam().first != MaterialLaw::linear) GTEST_SKIP() << "linear for small strains, tested above";
   for (const std::array<int, 3>& elements : {std::array{1, 1, 1}, std::array{3, 2, 1}}) {
-    const Blocks block = block_of(GetParam(), elements);
+    const Solids block = block_of(GetParam(), elements);
     const Eigen::Index size = block.mass().size();
     Eigen::MatrixXd stiffness(size, size);
     for (Eigen::Index column = 0; column < size; ++column)

@@ -3,7 +3,7 @@
 
 #include "mesh_writer.hpp"
 #include "model/mesh_topology.hpp"
-#include "scene/mesh_file.hpp"
+#include "scene/read_meshes.hpp"
 
 namespace ilaw::host::testing {
 namespace {

@@ -3,6 +3,7 @@
 #include "mesh_writer.hpp"
 #include "solid_fields.hpp"
 
+#include "model/box.hpp"
 #include "model/elements.hpp"
 #include "model/solids.hpp"
 
@@ -48,7 +49,7 @@ MeshSetup setup_of(const WrittenMesh& mesh, const Kind& kind) {
   MeshTopology topology = topology_of(data);
   return {"m", std::move(data), std::move(topology), {0, 0, 0}, {0, 0, 0}, kind.material(), kind.element};
 }
-Solids solids_of(const WrittenMesh& mesh, const Kind& kind) { return Solids({}, {setup_of(mesh, kind)}); }
+Solids solids_of(const WrittenMesh& mesh, const Kind& kind) { return Solids({setup_of(mesh, kind)}); }
 
 // A box whose inner nodes are moved about.
 WrittenMesh distorted(bool tetrahedra) {
@@ -200,15 +201,16 @@ TEST(Mesh, CriticalStepOfOneElementIsSharp) {
 
 // ---- boxes ----------------------------------------------------------------------------------------------
 
-Blocks block_of(const std::array<int, 3>& elements, const Kind& kind) {
-  return Blocks({{"m", {0, 0, 0}, {2.0, 1.2, 0.9}, {0, 0, 0}, elements, kind.material(), kind.element}});
+Solids block_of(const std::array<int, 3>& elements, const Kind& kind) {
+  return Solids(
+      {box_of({"m", {0, 0, 0}, {2.0, 1.2, 0.9}, {0, 0, 0}, elements, kind.material(), kind.element})});
 }
 
 TEST_P(MeshKinds, AreThoseOfABox) {
   const Kind kind = GetParam();
   if (kind.tetrahedra) GTEST_SKIP() << "boxes are of hexahedra";
   const Solids mesh = solids_of(box_mesh({4, 3, 2}, {2.0, 1.2, 0.9}, false), kind);
-  const Blocks box = block_of({4, 3, 2}, kind);
+  const Solids box = block_of({4, 3, 2}, kind);
   const auto near = [](const Dofs& a, const Dofs& b) { return (a - b).norm() <= 1e-14 * b.norm(); };
   EXPECT_TRUE(near(mesh.mass(), box.mass()));
   EXPECT_TRUE(near(mesh.position(), box.position()));

@@ -1,6 +1,6 @@
 // Blocks whose Poisson's ratio is close to 1/2: beams in bending and a bonded pad in compression against
 // closed forms, and the critical step. Elements with mean dilatation do not lock, full ones do.
-#include "model/blocks.hpp"
+#include "model/box.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
@@ -23,14 +23,14 @@ struct Grid {
   int node(int x, int y, int z) const { return x + (elements[0] + 1) * (y + (elements[1] + 1) * z); }
 };
 
-Blocks block_of(const Grid& grid, double poisson, Element element) {
-  return Blocks({{"b",
-                  grid.corner,
-                  grid.size,
-                  {0.0, 0.0, 0.0},
-                  grid.elements,
-                  {MaterialLaw::linear, young, poisson, 2.0},
-                  element}});
+Solids block_of(const Grid& grid, double poisson, Element element) {
+  return Solids({box_of({"b",
+                         grid.corner,
+                         grid.size,
+                         {0.0, 0.0, 0.0},
+                         grid.elements,
+                         {MaterialLaw::linear, young, poisson, 2.0},
+                         element})});
 }
 
 // Displacements of some degrees of freedom, and forces on the others.
@@ -39,7 +39,7 @@ struct Conditions {
 };
 
 // Column by column, of all nodes at once that are three apart and so share no element.
-Eigen::SparseMatrix<double> stiffness_of(const Blocks& block, const Grid& grid) {
+Eigen::SparseMatrix<double> stiffness_of(const Solids& block, const Grid& grid) {
   std::vector<Eigen::Triplet<double>> entries;
   const int nx = grid.elements[0], ny = grid.elements[1], nz = grid.elements[2];
   const auto near = [](int from, int all, int offset) { return from + offset >= 0 && from + offset <= all; };
@@ -70,7 +70,7 @@ Eigen::SparseMatrix<double> stiffness_of(const Blocks& block, const Grid& grid) 
 }
 
 // Displacements at rest under the conditions.
-Dofs solved(const Blocks& block, const Grid& grid, const Conditions& given) {
+Dofs solved(const Solids& block, const Grid& grid, const Conditions& given) {
   const Eigen::SparseMatrix<double> all = stiffness_of(block, grid);
   Dofs u = Dofs::Zero(all.rows()), load = u;
   for (const auto& [dof, value] : given.displacements) u[dof] = value;
@@ -219,7 +219,7 @@ double pressed_pad(double poisson, Element element, int layers) {
       given.displacements[3 * grid.node(x, y, layers) + 2] = -0.5 * strain * t;
     }
   }
-  const Blocks block = block_of(grid, poisson, element);
+  const Solids block = block_of(grid, poisson, element);
   const Dofs u = solved(block, grid, given);
   Dofs force = Dofs::Zero(u.size());
   block.add_internal_forces(u, force);
@@ -246,7 +246,7 @@ TEST(MeanDilatation, PressesABondedPadAsGentAndLindleySay) {
 // ---- the critical step ----------------------------------------------------------------------------------
 
 // 2/omega_max of M^-1/2 K M^-1/2.
-double exact_critical_step(const Blocks& block, const Grid& grid) {
+double exact_critical_step(const Solids& block, const Grid& grid) {
   const Eigen::VectorXd root = block.mass().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled =
       root.asDiagonal() * Eigen::MatrixXd(stiffness_of(block, grid)) * root.asDiagonal();
@@ -263,7 +263,7 @@ TEST(MeanDilatation, HasACriticalStepThatIsABound) {
     for (const std::array<int, 3>& elements :
          {std::array{1, 1, 1}, std::array{5, 4, 3}, std::array{1, 2, 6}, std::array{7, 1, 1}}) {
       const Grid grid{{0.0, 0.0, 0.0}, {1.0, 0.8, 0.7}, elements};
-      const Blocks block = block_of(grid, poisson, Element::mean_dilatation);
+      const Solids block = block_of(grid, poisson, Element::mean_dilatation);
       const double bound = block.critical_step(), limit = exact_critical_step(block, grid);
       EXPECT_LE(bound, limit * (1.0 + 1e-12)) << poisson << ", " << elements[0];
       EXPECT_GE(bound, block_of(grid, poisson, Element::full).critical_step() * (1.0 - 1e-12))

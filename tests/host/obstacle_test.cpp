@@ -51,7 +51,7 @@ TEST(Plane, GivesManyNodesTheGapsOfEachToTheBit) {
 }
 
 TEST(Sphere, MeasuresFromItsCenterInsideAndOutside) {
-  const Sphere sphere(Vector3d(1, 0, 0), 2.0, still());
+  const Round sphere(Vector3d(1, 0, 0), {}, 2.0, still());
   const RigidSurface outside = sphere.at(Vector3d(1, 3, 4), 0.0),
                      inside = sphere.at(Vector3d(1, 0, -0.5), 0.0);
   EXPECT_NEAR(outside.gap, 3.0, 1e-15);
@@ -61,7 +61,7 @@ TEST(Sphere, MeasuresFromItsCenterInsideAndOutside) {
 }
 
 TEST(Cylinder, MeasuresFromItsAxisWhateverItsLength) {
-  const Cylinder cylinder(Vector3d(0, 0, 1), Vector3d(0, 7, 0), 0.5, still());
+  const Round cylinder(Vector3d(0, 0, 1), Vector3d(0, 7, 0), 0.5, still());
   const RigidSurface surface = cylinder.at(Vector3d(3, 100, 5), 0.0);
   EXPECT_NEAR(surface.gap, 4.5, 1e-14);
   EXPECT_NEAR((Vector3d(surface.normal) - Vector3d(0.6, 0, 0.8)).norm(), 0.0, 1e-15);
@@ -69,11 +69,11 @@ TEST(Cylinder, MeasuresFromItsAxisWhateverItsLength) {
 
 // Where no direction is better than another, the normal is still a unit vector, off the axis of a cylinder.
 TEST(RoundObstacle, HasANormalAtItsCenter) {
-  const Sphere sphere(Vector3d(1, 2, 3), 2.0, still());
+  const Round sphere(Vector3d(1, 2, 3), {}, 2.0, still());
   EXPECT_EQ(sphere.at(Vector3d(1, 2, 3), 0.0).gap, -2.0);
   EXPECT_EQ(sphere.at(Vector3d(1, 2, 3), 0.0).normal.norm(), 1.0);
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 3, 0), Vector3d(1, 1, 0)}) {
-    const Cylinder cylinder(Vector3d::Zero(), axis, 1.0, still());
+    const Round cylinder(Vector3d::Zero(), axis, 1.0, still());
     const RigidSurface surface = cylinder.at(Vector3d::Zero(), 0.0);
     EXPECT_EQ(surface.gap, -1.0);
     EXPECT_NEAR(surface.normal.norm(), 1.0, 1e-15);
@@ -88,8 +88,8 @@ TEST(Obstacle, HasAGapThatIsADistanceAlongItsNormal) {
   for (int draw = 0; draw < 10000; ++draw) {
     const Vector3d point = random_vector(random), direction = random_vector(random);
     const Plane plane(point, direction, still());
-    const Sphere sphere(point, 0.7, still());
-    const Cylinder cylinder(point, direction, 0.7, still());
+    const Round sphere(point, {}, 0.7, still());
+    const Round cylinder(point, direction, 0.7, still());
     const Vector3d x = random_vector(random);
     for (const Obstacle* obstacle : std::initializer_list<const Obstacle*>{&plane, &sphere, &cylinder}) {
       const RigidSurface surface = obstacle->at(x, 0.0);
@@ -117,7 +117,7 @@ TEST(MovingObstacle, IsTheOneAtRestDisplaced) {
     for (int draw = 0; draw < 1000; ++draw) {
       const Vector3d center = random_vector(random), x = random_vector(random);
       const double time = 0.003 * draw;
-      const Sphere moving(center, 0.5, motion), resting(center, 0.5, still());
+      const Round moving(center, {}, 0.5, motion), resting(center, {}, 0.5, still());
       EXPECT_EQ(moving.at(x, time).gap, resting.at(x - motion.displacement(time), 0.0).gap)
           << "draw " << draw;
       EXPECT_EQ(Vector3d(moving.velocity(0.1, 0.2)), Vector3d(motion.velocity(0.1, 0.2))) << "draw " << draw;

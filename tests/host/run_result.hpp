@@ -21,11 +21,17 @@ inline std::vector<std::map<std::string, std::string>> rows_of(const fs::path& f
   }
   return rows;
 }
-// Its columns; what is no number is 0.
+// A cell that is no number, such as an empty one, is NaN.
+inline double number_in(const std::string& cell) {
+  char* end = nullptr;
+  const double number = std::strtod(cell.c_str(), &end);
+  return cell.empty() || *end != '\0' ? NAN : number;
+}
+// Its columns.
 inline std::map<std::string, std::vector<double>> table_of(const fs::path& file) {
   std::map<std::string, std::vector<double>> table;
   for (const auto& row : rows_of(file))
-    for (const auto& [name, cell] : row) table[name].push_back(std::strtod(cell.c_str(), nullptr));
+    for (const auto& [name, cell] : row) table[name].push_back(number_in(cell));
   return table;
 }
 

@@ -1,7 +1,7 @@
 // Random scenes fulfil what every scene must; scenes that once did not, too; what is found is made small.
 #include "host_runner.hpp"
 
-#include "stress/random_parameters.hpp"
+#include "stress/random_parts.hpp"
 #include "stress/shrink.hpp"
 #include "stress/stress.hpp"
 

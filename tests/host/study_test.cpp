@@ -265,10 +265,10 @@ TEST(Study, TakesLawsThatSuitTheScene) {
   rubs["time"]["end"] = 0.35;  // past the first impact
   json holds = shipped("postit_test2");
   for (json* scene : {&rubs, &holds}) scene->erase("study");
-  const Result rubbed = study_of(rubs, "--levels 2"), held = study_of(holds, "--levels 2");
-  ASSERT_EQ(rubbed.outcome.code, 0) << rubbed.outcome.output;
+  const Result sliding = study_of(rubs, "--levels 2"), held = study_of(holds, "--levels 2");
+  ASSERT_EQ(sliding.outcome.code, 0) << sliding.outcome.output;
   ASSERT_EQ(held.outcome.code, 0) << held.outcome.output;
-  const json usual = json_of(rubbed.folder / "study.json")["laws"];
+  const json usual = json_of(sliding.folder / "study.json")["laws"];
   EXPECT_EQ(usual.size(), 7U) << usual;
   const json own = json_of(held.folder / "study.json")["laws"];
   ASSERT_EQ(own.size(), 1U) << own;

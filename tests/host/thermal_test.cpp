@@ -76,6 +76,22 @@ TEST(Thermal, ConductsALinearProfile) {
   }
 }
 
+// Nodes follow a table at the times of their temperatures.
+TEST(Thermal, HoldsNodesAtATableOverTime) {
+  const Bar bar{.conductivity = 0.3, .elements = 3};
+  for (const double fraction : step_fractions) {
+    const double dt = fraction * bar.stable_step();
+    json scene = scene_with({column(bar, "bar", 0)}, dt, 1.0);
+    scene["loads"] = {held("bar.z_min", 300)};
+    scene["loads"][0]["history"] = {{0, 300}, {4, 380}};
+    Scene read = scene_of(scene.dump());
+    Integrator integrator = integrator_of(read);
+    run(integrator, read.steps);
+    EXPECT_NEAR(integrator.temperatures()->at(0), 300 + 20 * thermal_time(integrator, dt), 1e-10);
+    EXPECT_LT(integrator.temperatures()->report().balance_error, 1e-12);
+  }
+}
+
 // A side with a flux of 6 and a conductivity of 0.3 has the slope 20.
 TEST(Thermal, ConductsAFluxThroughABar) {
   const Bar bar{.conductivity = 0.3};
@@ -115,9 +131,13 @@ TEST(Thermal, HeatsAHalfSpaceBySecondOrder) {
   EXPECT_LT(errors.back(), 2e-3 * 0.3);
 }
 
-// Held on two sides, in elements that are no boxes.
+// Held on one side, held or with a flux on the other, in elements that are no boxes.
 TEST(Thermal, ConductsALinearProfileThroughAMesh) {
-  for (const bool tetrahedra : {false, true}) {
+  const json flux = {{"type", "heat_flux"}, {"nodes", "body.x_max"}, {"history", {{0, 0.3 * -120}}}};
+  for (const auto& [tetrahedra, end] : {std::pair{false, held("body.x_max", 280)},
+                                        {false, flux},
+                                        {true, held("body.x_max", 280)},
+                                        {true, flux}}) {
     const auto folder = fresh_folder();
     std::ofstream(folder / "body.vtu")
         << box_mesh({3, 2, 2}, {1, 0.6, 0.6}, tetrahedra, [](Eigen::Vector3d x) {
@@ -129,7 +149,7 @@ TEST(Thermal, ConductsALinearProfileThroughAMesh) {
     for (const char* key : {"corner", "size", "elements"}) body.erase(key);
     body["file"] = (folder / "body.vtu").string();
     scene["model"]["meshes"] = {body};
-    scene["loads"] = {held("body.x_min", 400), held("body.x_max", 280)};
+    scene["loads"] = {held("body.x_min", 400), end};
     scene["time"] = {{"dt", 1e-4}, {"end", 200}};
     const double stable = scene_of(scene.dump()).model->thermal()->stable_step().step;
     for (const double fraction : step_fractions) {
@@ -240,6 +260,39 @@ TEST(Thermal, HoldsTheTemperatureOfTwoHalfSpaces) {
   }
   EXPECT_LT(errors[1], 0.01 * errors[0]);
   EXPECT_LT(errors[2], 1e-9);
+}
+
+// A node within a facet sees the temperature sum of w_i T_i and the capacity 1/(sum of w_i^2/C_i), here of
+// equal nodes, each of which takes w_i of the heat.
+TEST(Thermal, ExchangesHeatWithinAFacet) {
+  const Bar facet{.temperature = 400, .elements = 1}, bar{.specific_heat = 3, .temperature = 300};
+  const json law = {{"law", "conductance"}, {"parameters", {{"conductance", 0.4}}}};
+  for (const auto& [x, y] : {std::pair{0.5, 0.5}, std::pair{0.3, 0.6}})
+    for (const double dt : {0.013, 0.0031, 0.00071}) {
+      json scene = two_columns(facet, bar, dt, 0.5, law);
+      for (json& block : scene["model"]["blocks"]) block["thermal"]["conductivity"] = 0;
+      scene["model"]["blocks"][1]["corner"] = {x, y, 1};
+      scene["initial"] = json::array();
+      scene["loads"] = {{{"type", "motion"}, {"nodes", "below"}},
+                        {{"type", "motion"}, {"nodes", "above"}, {"axes", {0, 1}}},
+                        {{"type", "gravity"}, {"acceleration", {0, 0, -0.01}}}};
+      scene["interfaces"][0]["nodes"] = {8};
+      Scene read = scene_of(scene.dump());
+      Integrator integrator = integrator_of(read);
+      run(integrator, read.steps);
+      const Dofs& capacity = read.model->thermal()->capacity();
+      const std::array weights{(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
+      double yielding = 0.0;  // 1/C of the facet
+      for (const double weight : weights) yielding += weight * weight / capacity[4];
+      const double both = 1 / capacity[8] + yielding,
+                   conductance = 0.4 * read.interfaces[0]->setup().areas[0];
+      const double heat = 100 * -std::expm1(-conductance * both * thermal_time(integrator, dt)) / both;
+      EXPECT_NEAR(integrator.temperatures()->at(8), 300 + heat / capacity[8], 1e-10);
+      for (int k = 0; k < 4; ++k)
+        EXPECT_NEAR(integrator.temperatures()->at(4 + k),
+                    400 - weights[static_cast<std::size_t>(k)] * heat / capacity[4], 1e-10);
+      EXPECT_LT(integrator.temperatures()->report().balance_error, 1e-13);
+    }
 }
 
 // Conduction and contact at their limits together: no node leaves the range of the start. With both at once,
@@ -367,23 +420,46 @@ TEST(Thermal, SharesFrictionBetweenTwoBlocks) {
 
 // ---- the host -------------------------------------------------------------------------------------------
 
-TEST(Thermal, HasTheSameBitsContactByContact) {
+std::vector<double> temperatures_of(const Integrator& integrator, const Scene& scene) {
   std::vector<double> temperatures;
-  for (const bool plainly : {false, true}) {
-    Scene read = scene_of(sliding_point(0.0031, 0.25).dump());
-    Integrator integrator = integrator_of(read);
-    if (plainly) read.interfaces[0]->step_plainly();
-    run(integrator, 100);
-    temperatures.push_back(integrator.temperatures()->at(0));
+  for (int node = 0; node < scene.model->node_count(); ++node)
+    temperatures.push_back(integrator.temperatures()->at(node));
+  return temperatures;
+}
+
+TEST(Thermal, HasTheSameBitsContactByContact) {
+  const Bar below{.conductivity = 0.4, .temperature = 350, .elements = 2}, above{.elements = 3};
+  const json law = {{"law", "conductance"}, {"parameters", {{"conductance", 2}}}};
+  for (const json& scene : {sliding_point(0.0031, 0.25), two_columns(below, above, 0.01, 1.0, law)}) {
+    std::vector<std::vector<double>> temperatures;
+    for (const bool plainly : {false, true}) {
+      Scene read = scene_of(scene.dump());
+      Integrator integrator = integrator_of(read);
+      if (plainly) read.interfaces[0]->step_plainly();
+      const std::vector<double> before = temperatures_of(integrator, read);
+      run(integrator, 100);
+      temperatures.push_back(temperatures_of(integrator, read));
+      EXPECT_NE(temperatures.back(), before);
+    }
+    EXPECT_EQ(temperatures[0], temperatures[1]);
   }
-  EXPECT_GT(temperatures[0], 290.1);
-  EXPECT_EQ(temperatures[0], temperatures[1]);
+}
+
+// A block that is drawn over a floor, with its top held: heat flows into both, and out of the top.
+json drawn_block(const Bar& bar, double dt) {
+  json scene = scene_with({column(bar, "bar", 0)}, dt, 1.0);
+  scene["initial"] = {{{"gradient", {{0, 0, 0}, {0, 0, 0}, {0, 0, -1e-3}}}}};
+  scene["loads"] = {held("bar.z_max", 310),
+                    {{"type", "motion"}, {"nodes", "bar.z_max"}, {"velocity", {0.1, 0, 0}}}};
+  scene["interfaces"] = {{{"law", "coulomb"},
+                          {"nodes", "bar.z_min"},
+                          {"parameters", {{"friction", 0.3}, {"heat_partition", 0.25}}},
+                          {"obstacle", {{"type", "plane"}, {"point", {0, 0, 0}}, {"normal", {0, 0, 1}}}}}};
+  return scene;
 }
 
 TEST(Thermal, ResumesToTheSameBits) {
-  const Bar below{.conductivity = 0.4, .temperature = 350, .elements = 2}, above{.elements = 3};
-  const json law = {{"law", "conductance"}, {"parameters", {{"conductance", 2}}}};
-  const std::string text = two_columns(below, above, 0.01, 1.0, law).dump();
+  const std::string text = drawn_block({.elements = 3}, 0.01).dump();
   Scene one = scene_of(text), other = scene_of(text);
   Integrator whole = integrator_of(one), rest = integrator_of(other);
   run(whole, 40);
@@ -392,9 +468,15 @@ TEST(Thermal, ResumesToTheSameBits) {
   rest.load(saved);
   run(whole, 30);
   run(rest, 30);
-  for (int node = 0; node < one.model->node_count(); ++node)
-    EXPECT_EQ(whole.temperatures()->at(node), rest.temperatures()->at(node));
-  EXPECT_EQ(whole.temperatures()->report().balance_error, rest.temperatures()->report().balance_error);
+  EXPECT_EQ(temperatures_of(whole, one), temperatures_of(rest, other));
+  const HeatReport of_whole = whole.temperatures()->report(), of_rest = rest.temperatures()->report();
+  for (const auto sum :
+       {&HeatReport::stored, &HeatReport::obstacles, &HeatReport::friction, &HeatReport::supplied}) {
+    EXPECT_NE(of_whole.*sum, 0.0);
+    EXPECT_EQ(of_whole.*sum, of_rest.*sum);
+  }
+  EXPECT_LT(of_whole.balance_error, 1e-12);
+  EXPECT_EQ(of_whole.balance_error, of_rest.balance_error);
 }
 
 // The block of docs/results/tyre_block.md.
@@ -485,7 +567,9 @@ TEST(Thermal, RefusesAStepAboveThatOfConduction) {
   EXPECT_NO_THROW(scene_of(scene_with({column(bar, "tread", 0)}, stable, 1.0).dump()));
   const std::string said = refusal_of(scene_with({column(bar, "tread", 0)}, 1.001 * stable, 1.0));
   EXPECT_NE(said.find("the stable step of conduction in 'tread'"), std::string::npos) << said;
-  json scene = scene_with({column(bar, "tread", 0)}, stable, 1.0);
+  json scene = scene_with({column(bar, "tread", 0)}, 1.001 * stable, 1.0);
+  scene["model"]["blocks"][0].erase("name");
+  EXPECT_NE(refusal_of(scene).find("conduction in 'block0'"), std::string::npos);
   scene["time"] = {{"cfl", 0.5}, {"end", 1.0}};
   EXPECT_NEAR(scene_of(scene.dump()).dt, 0.5 * stable, 1e-15);
 }
@@ -503,6 +587,52 @@ TEST(Thermal, RefusesTwoTemperaturesOfANode) {
   scene.erase("fields");
   scene["interfaces"][0]["parameters"]["temperature"] = 300;
   EXPECT_NE(refusal_of(scene).find("/interfaces/0/parameters/temperature: found a value"), std::string::npos);
+}
+
+// Nodes of an edge belong to two sides.
+TEST(Thermal, RefusesTwoLoadsThatHoldANode) {
+  json scene = scene_with({column({}, "bar", 0)}, 0.001, 1.0);
+  scene["loads"] = {held("bar.x_min", 300), held("bar.z_max", 400)};
+  EXPECT_EQ(refusal_of(scene),
+            "/loads/1: found node 20 held at [[0,400.0]], which /loads/0 holds at [[0,300.0]], expected one "
+            "'history' for each node");
+  scene["loads"][1] = held("bar.x_max", 400);
+  EXPECT_EQ(refusal_of(scene), "not refused");
+  scene["loads"][1] = held("bar.z_max", 300);
+  EXPECT_EQ(refusal_of(scene), "not refused");
+}
+
+// A field is for interfaces whose bodies have no temperature.
+TEST(Thermal, TakesFieldsInterfaceByInterface) {
+  json scene = sliding_point(0.01, 0.5);
+  scene["model"]["points"].push_back({{"mass", 2}, {"position", {1, 0}}});
+  scene["interfaces"][0]["nodes"] = {0};
+  scene["interfaces"].push_back({{"law", "conductance"},
+                                 {"nodes", {1}},
+                                 {"parameters", {{"conductance", 1}}},
+                                 {"obstacle", scene["interfaces"][0]["obstacle"]}});
+  scene["fields"] = {{"temperature", 300}, {"counterpart_temperature", 310}};
+  EXPECT_EQ(refusal_of(scene), "not refused");
+  scene["model"]["points"][1]["thermal"] = scene["model"]["points"][0]["thermal"];
+  scene["interfaces"][1]["obstacle"]["temperature"] = 310;
+  EXPECT_NE(refusal_of(scene).find("/fields/temperature: found a value, expected none: the nodes of "
+                                   "'interface1' have temperatures of their own, which its law reads"),
+            std::string::npos)
+      << refusal_of(scene);
+}
+
+TEST(Thermal, WarnsOfATemperatureThatNoLawReads) {
+  json scene = sliding_point(0.01, 0.5);
+  EXPECT_TRUE(scene_of(scene).warnings.empty());
+  scene["interfaces"][0]["obstacle"]["temperature"] = 310;
+  const std::vector<std::string> warnings = scene_of(scene).warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0],
+            "/interfaces/0/obstacle/temperature: found 310, which law 'coulomb' does not read: nothing is "
+            "conducted");
+  scene["interfaces"][0]["law"] = "conductance";
+  scene["interfaces"][0]["parameters"] = {{"conductance", 1}};
+  EXPECT_TRUE(scene_of(scene).warnings.empty());
 }
 
 TEST(Thermal, RefusesContactWithABodyWithoutTemperature) {

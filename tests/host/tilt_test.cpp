@@ -115,13 +115,14 @@ TEST(Tilt, GapAndNormalAreThoseOfTheAngle) {
     const Dofs u = Eigen::Vector3d(0.3, 0.7, -0.2);
     const ContactPoint found = plane.contact_point(0, u, time);
     EXPECT_LT((found.normal - normal).norm(), 1e-15);
-    EXPECT_LT((plane.turned(Eigen::Vector3d::UnitY(), 0.0, time) - normal).norm(), 1e-15);
+    EXPECT_LT((plane.obstacle()->turned(Eigen::Vector3d::UnitY(), 0.0, time) - normal).norm(), 1e-15);
     EXPECT_NEAR(found.gap, (Eigen::Vector3d(1.8, 0.5, 3) + u - Eigen::Vector3d(1, 0.5, -2)).dot(normal),
                 1e-15);
   }
   // In 2D as well.
   Scene flat = scene_of(on_plane(2, 0.8, 0.3, 0.01).dump());
-  const Vector turned = flat.interfaces[0]->setup().counterpart->turned(Eigen::Vector2d(1, 0), 0.0, 1.3);
+  const Vector turned =
+      flat.interfaces[0]->setup().counterpart->obstacle()->turned(Eigen::Vector2d(1, 0), 0.0, 1.3);
   EXPECT_LT((turned - Eigen::Vector2d(std::cos(rate * 1.3), std::sin(rate * 1.3))).norm(), 1e-15);
 }
 

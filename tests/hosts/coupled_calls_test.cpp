@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "coupled_scene.hpp"
 
+#include "support/law_runner.hpp"
+
 #include <gtest/gtest.h>
 #include <ilaw/arrays.hpp>
 #include <ilaw/coupled.hpp>
@@ -27,7 +29,8 @@ struct Mistake {
   void (*spoil)(Call&);
 };
 
-void expect_refused(Scene& scene, std::initializer_list<Mistake> mistakes) {
+// bad_group: 0 where the group of the call is refused, -1 where its bodies are.
+void expect_refused(Scene& scene, std::int64_t bad_group, std::initializer_list<Mistake> mistakes) {
   const std::vector<double> before = scene.v;
   for (const Mistake& mistake : mistakes) {
     Call call{scene.bodies(), {}, scene.batch()};
@@ -40,6 +43,7 @@ void expect_refused(Scene& scene, std::initializer_list<Mistake> mistakes) {
     EXPECT_EQ(ilaw_coupled_solve(solver, &call.bodies, groups, 1, nullptr, &report), ILAW_INVALID_ARGUMENT)
         << mistake.said;
     EXPECT_STREQ(report.reason, mistake.said);
+    EXPECT_EQ(report.bad_group, bad_group) << mistake.said;
     ilaw_coupled_destroy(solver);
   }
   EXPECT_EQ(scene.v, before);
@@ -49,9 +53,10 @@ TEST(Coupled, SaysWhatIsWrongWithSpins) {
   static const double six[6] = {1, 1, 1, 0, 0, 0};
   Scene scene = cube(rolling(), 1, ILAW_DELASSUS_TRANSVERSE_SPIN);
   scene.arm[1] += 1e-3;
-  expect_refused(scene, {{"delassus_form is transverse, and an arm is not along the normal", [](Call&) {}}});
+  expect_refused(scene, 0,
+                 {{"delassus_form is transverse, and an arm is not along the normal", [](Call&) {}}});
   scene.arm[1] -= 1e-3;
-  expect_refused(scene,
+  expect_refused(scene, 0,
                  {{"delassus_form has spins, and moment is missing", [](Call& c) { c.batch.moment = {}; }},
                   {"delassus_form has spins, and moment is missing",
                    [](Call& c) { c.batch.struct_size = ILAW_BATCH_SIZE_1_0; }},
@@ -68,28 +73,26 @@ TEST(Coupled, SaysWhatIsWrongWithSpins) {
 
 TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
   static const double six[6] = {1, 1, 1, 0, 0, 0};
-  static float single = 0.0F;
   static std::uint8_t one_status = 0;
   static const std::int32_t list[1] = {0};
   Scene scene = cube(tie(), 1);
   expect_refused(
-      scene,
+      scene, -1,
       {{"bodies are missing, or their struct_size is wrong", [](Call& c) { c.bodies.struct_size = 8; }},
        {"dimension is not 1, 2 or 3", [](Call& c) { c.bodies.dimension = 0; }},
        {"dimension is not 1, 2 or 3", [](Call& c) { c.bodies.dimension = 4; }},
        {"counts of bodies are wrong", [](Call& c) { c.bodies.owned_count = -1; }},
        {"counts of bodies are wrong", [](Call& c) { c.bodies.count = c.bodies.owned_count - 1; }},
        {"count is above 2^31 - 2", [](Call& c) { c.bodies.count = std::int64_t{1} << 60; }},
-       {"an output of bodies has floats or a stride of 0",
-        [](Call& c) { c.bodies.velocity.node_stride = 0; }},
-       {"an output of bodies has floats or a stride of 0",
-        [](Call& c) { c.bodies.impulse.floats = &single; }},
+       {"an output of bodies has a stride of 0", [](Call& c) { c.bodies.velocity.node_stride = 0; }},
        {"inverse_mass or v_free is missing", [](Call& c) { c.bodies.inverse_mass = {}; }},
        {"inverse_mass or v_free is missing", [](Call& c) { c.bodies.v_free = {}; }},
        {"bodies rotate in dimension 3 alone", [](Call& c) { c.bodies.dimension = 2; }},
        {"spin_free is missing", [](Call& c) { c.bodies.spin_free = {}; }},
-       {"spin_previous is missing", [](Call& c) { c.bodies.spin_previous = {}; }},
-       {"the struct_size of contacts is not that of any version",
+       {"spin_previous is missing", [](Call& c) { c.bodies.spin_previous = {}; }}});
+  expect_refused(
+      scene, 0,
+      {{"the struct_size of contacts is not that of any version",
         [](Call& c) { c.contacts.struct_size = 8; }},
        {"a batch is missing, or its struct_size is wrong", [](Call& c) { c.contacts.batch = nullptr; }},
        {"law or instance is null", [](Call& c) { c.contacts.law = nullptr; }},
@@ -131,6 +134,93 @@ TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
           c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE_SPIN;
           c.batch.moment = c.batch.impulse;
         }}});
+}
+
+// In place of an array of doubles one of floats, which has no values.
+template <class Array>
+void make_single(Array& array) {
+  static float numbers[9];
+  array = {nullptr, numbers, array.node_stride, array.component_stride};
+}
+template <auto array>
+Mistake bodies_have(const char* said) {
+  return {said, [](Call& c) { make_single(c.bodies.*array); }};
+}
+template <auto array>
+Mistake contacts_have(const char* said) {
+  return {said, [](Call& c) { make_single(c.contacts.*array); }};
+}
+template <auto array>
+Mistake batch_has(const char* said) {
+  return {said, [](Call& c) { make_single(c.batch.*array); }};
+}
+
+TEST(Coupled, RefusesFloatsOfBodies) {
+  Scene scene = cube(tie(), 1);
+  expect_refused(
+      scene, -1,
+      {bodies_have<&ilaw_bodies::inverse_mass>("inverse_mass of bodies has floats; expected doubles"),
+       bodies_have<&ilaw_bodies::inverse_inertia>("inverse_inertia of bodies has floats; expected doubles"),
+       bodies_have<&ilaw_bodies::v_free>("v_free of bodies has floats; expected doubles"),
+       bodies_have<&ilaw_bodies::spin_free>("spin_free of bodies has floats; expected doubles"),
+       bodies_have<&ilaw_bodies::v_previous>("v_previous of bodies has floats; expected doubles"),
+       bodies_have<&ilaw_bodies::spin_previous>("spin_previous of bodies has floats; expected doubles"),
+       bodies_have<&ilaw_bodies::velocity>("velocity of bodies has floats; expected doubles"),
+       bodies_have<&ilaw_bodies::spin>("spin of bodies has floats; expected doubles"),
+       bodies_have<&ilaw_bodies::impulse>("impulse of bodies has floats; expected doubles"),
+       bodies_have<&ilaw_bodies::angular_impulse>("angular_impulse of bodies has floats; expected doubles")});
+}
+
+TEST(Coupled, RefusesFloatsOfContacts) {
+  Scene scene = cube(tie(), 1);
+  expect_refused(
+      scene, 0,
+      {contacts_have<&ilaw_contacts::arm>("arm has floats; expected doubles"),
+       contacts_have<&ilaw_contacts::counterpart_arm>("counterpart_arm has floats; expected doubles"),
+       contacts_have<&ilaw_contacts::wall_velocity>("wall_velocity has floats; expected doubles"),
+       contacts_have<&ilaw_contacts::wall_previous>("wall_previous has floats; expected doubles"),
+       contacts_have<&ilaw_contacts::body_weight>("body_weight has floats; expected doubles"),
+       contacts_have<&ilaw_contacts::counterpart_weight>("counterpart_weight has floats; expected doubles"),
+       contacts_have<&ilaw_contacts::wall_spin>("wall_spin has floats; expected doubles"),
+       contacts_have<&ilaw_contacts::wall_spin_previous>("wall_spin_previous has floats; expected doubles"),
+       batch_has<&ilaw_batch::gap>("gap has floats; expected doubles"),
+       batch_has<&ilaw_batch::gap_offset>("gap_offset has floats; expected doubles"),
+       batch_has<&ilaw_batch::area>("area has floats; expected doubles"),
+       batch_has<&ilaw_batch::normal>("normal has floats; expected doubles"),
+       batch_has<&ilaw_batch::tangent>("tangent has floats; expected doubles"),
+       batch_has<&ilaw_batch::state_in>("state_in has floats; expected doubles"),
+       batch_has<&ilaw_batch::state_out>("state_out has floats; expected doubles"),
+       batch_has<&ilaw_batch::impulse>("impulse has floats; expected doubles"),
+       batch_has<&ilaw_batch::moment>("moment has floats; expected doubles"),
+       batch_has<&ilaw_batch::energy>("energy has floats; expected doubles")});
+}
+
+// The lists of a batch, whose lengths the instance says.
+TEST(Coupled, RefusesFloatsInListsOfABatch) {
+  static const ilaw::interface varying = ilaw::testing::make_law(
+      "coulomb", ilaw::testing::SetupBuilder({{{"friction", 0.3}}, {}, {}, {"kinetic_friction"}}, 3,
+                                             ILAW_DELASSUS_FULL, ILAW_FRAME_GLOBAL));
+  static std::array<ilaw_output, 8> amounts;
+  static double amount = 0.0;
+  Scene scene = cube(friction(0.3), 1);
+  ASSERT_LE(scene.law.info().amount_count, amounts.size());
+  expect_refused(scene, 0,
+                 {{"an array of per_node_parameters has floats; expected doubles",
+                   [](Call& c) {
+                     static ilaw_input kinetic;
+                     make_single(kinetic);
+                     c.contacts.instance = varying.instance();
+                     c.batch.per_node_parameters = &kinetic;
+                   }},
+                  {"an array of amounts has floats; expected doubles",
+                   [](Call& c) {
+                     make_single(amounts[1]);
+                     c.batch.amounts = amounts.data();
+                   }},
+                  {"an array of amounts has a stride of 0", [](Call& c) {
+                     amounts[1] = ilaw::output(&amount, 0, 0);
+                     c.batch.amounts = amounts.data();
+                   }}});
 }
 
 TEST(Coupled, AnswersCallsOfNothing) {

@@ -179,6 +179,23 @@ TEST(CoupledConvergence, GivesNoWorseImpulsesForMoreIterations) {
   }
 }
 
+// Both budgets end within the first splitting, whose impulses are given back: more of it are better ones.
+TEST(CoupledConvergence, KeepsASplittingThatEndsUnsolved) {
+  const auto solved = [](std::uint32_t most) {
+    Assembly column(friction(false, 0.3), false);
+    for (int i = 0; i < 400; ++i) {
+      column.add_body(1.0, 0.0, {0.01 * std::sin(3.0 * i), 0.0, -1e-2});
+      column.add(i, i - 1);
+    }
+    const ilaw_coupled_report report = column.solve(1e-14, most);
+    EXPECT_EQ(report.method, static_cast<std::uint32_t>(ILAW_METHOD_DOUGLAS_RACHFORD)) << most;
+    return report.residual;
+  };
+  const double early = solved(240), late = solved(314);
+  EXPECT_GT(late, 1e-14);
+  EXPECT_LE(late, 0.7 * early);
+}
+
 // Bodies that fly together have relative velocities of rounding alone: beside their speed these are none.
 TEST(CoupledConvergence, IgnoresRoundingBelowTheSpeed) {
   for (const double speed : {0.0, 1.0}) {

@@ -77,8 +77,8 @@ class Grains {
   double h;
   std::vector<Grain> grains;
   std::vector<Wall> walls;
-  Vector pull{0.0, 0.0, -9.81};
-  double reach = 0.0;  // contacts have gaps up to it
+  Vector pull{0.0, 0.0, -9.81}, torque{};  // acceleration, and torque on each grain
+  double reach = 0.0;                      // contacts have gaps up to it
   bool walls_spin = false, begins_with_impulse = true, begins_with_moment = true;
   ilaw_coupled_options options = default_options();
   double dissipated = 0.0, work = 0.0;
@@ -146,8 +146,9 @@ class Grains {
     for (auto* vectors : {&v_, &w_, &v_previous_, &w_previous_}) vectors->assign(count, {});
     inverse_mass_.assign(count, 0.0), inverse_inertia_.assign(count, 0.0);
     for (std::size_t i = 0; i < count; ++i) {
-      v_previous_[i] = grains[i].v, w_[i] = w_previous_[i] = grains[i].w;
+      v_previous_[i] = grains[i].v, w_previous_[i] = grains[i].w;
       v_[i] = grains[i].v + h * pull;
+      w_[i] = grains[i].w + (h / grains[i].inertia()) * torque;
       inverse_mass_[i] = 1.0 / grains[i].mass, inverse_inertia_[i] = 1.0 / grains[i].inertia();
     }
   }

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <random>
 
 namespace {
 
@@ -33,10 +32,7 @@ Grains heap(double h, double unit = 1.0, const Map& map = {}) {
   made.options.tolerance = tolerance;
   made.pull = unit * map(pull);
   made.reach = 0.1 * size;
-  std::mt19937 bits(7);
-  const auto within = [&](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(bits);
-  };
+  Random within(7);
   for (int i = 0; i < 45; ++i) {
     const double r = size * within(0.35, 0.5);
     const Vector x =

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "support/random.hpp"
+
 #include <gtest/gtest.h>
 #include <ilaw/arrays.hpp>
 #include <ilaw/coupled.hpp>
 #include <ilaw/loader.hpp>
 
 #include <cmath>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -176,10 +177,9 @@ inline Scene cube(ilaw::interface law, unsigned seed, std::uint32_t form = ILAW_
       if (at[c] > 0) scene.add(i, i - stride[c], 0.0, n);
     }
   }
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  for (double& x : scene.v) x = uniform(random);
-  for (double& x : scene.w) x = uniform(random);
+  ilaw::testing::Random random(seed);
+  for (double& x : scene.v) x = random();
+  for (double& x : scene.w) x = random();
   scene.initialise();
   return scene;
 }

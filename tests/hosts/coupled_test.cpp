@@ -3,6 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "coupled_scene.hpp"
 
+#include "support/program.hpp"
+
 #include <gtest/gtest.h>
 #include <ilaw/coupled.hpp>
 #include <ilaw/loader.hpp>
@@ -10,10 +12,8 @@
 #include <algorithm>
 #include <barrier>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <numeric>
-#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,6 +21,7 @@
 namespace {
 
 using namespace coupled_scene;
+using ilaw::testing::Random;
 
 TEST(Coupled, StackAtRestStaysAtRest) {
   Scene scene(friction(0.3), 100);
@@ -88,15 +89,14 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 // Contacts between any two of 27 spheres, in any direction: their colors depend on their order.
 Scene tangle(ilaw::interface law) {
   Scene scene(std::move(law), 27);
-  std::mt19937 random(4);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(4);
   for (std::int32_t a = 0; a < 27; ++a)
     for (std::int32_t b = 0; b < a; ++b) {
-      const double angle = 3.0 * uniform(random);
-      if (uniform(random) > 0.5) scene.add(a, b, 0.0, {0.6 * std::cos(angle), 0.6 * std::sin(angle), 0.8});
+      const double angle = 3.0 * random();
+      if (random() > 0.5) scene.add(a, b, 0.0, {0.6 * std::cos(angle), 0.6 * std::sin(angle), 0.8});
     }
-  for (double& x : scene.v) x = uniform(random);
-  for (double& x : scene.w) x = uniform(random);
+  for (double& x : scene.v) x = random();
+  for (double& x : scene.w) x = random();
   scene.initialise();
   return scene;
 }
@@ -109,7 +109,7 @@ TEST(Coupled, OrderOfContactsDoesNotMatter) {
     Scene shuffled = tangle(law());
     std::vector<std::size_t> order(shuffled.body.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::shuffle(order.begin(), order.end(), std::mt19937(1));
+    std::shuffle(order.begin(), order.end(), Random(1).engine);
     const Scene from = tangle(law());
     for (std::size_t k = 0; k < order.size(); ++k) {
       shuffled.body[k] = from.body[order[k]];
@@ -324,14 +324,17 @@ TEST(Coupled, NamesContactsWithBadInputAndSolvesTheOthers) {
 // tests/hosts/grains.c, a host in C: a thousand grains fall into a box. docs/comparisons.md has larger ones.
 TEST(Coupled, PileSettlesWithoutSinkingIntoItself) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
-  FILE* pipe = popen(ILAW_grains_c " coulomb 1000 250 15 5e-3 10", "r");
+  const auto [code, output] =
+      ilaw::testing::programs::run_command(ILAW_grains_c " coulomb 1000 250 15 5e-3 10");
+  ASSERT_EQ(code, 0) << output;
   double overlap = 1.0, kinetic = 1.0, residual = 1.0, sweeps = 0.0, step = 0.0;
   int contacts = 0;
-  ASSERT_EQ(std::fscanf(pipe, "overlap %lf kinetic %lf residual %lf sweeps %lf contacts %d", &overlap,
-                        &kinetic, &residual, &sweeps, &contacts),
-            5);
-  EXPECT_EQ(std::fscanf(pipe, " cpu [s] %*f, a step [ms] %lf,", &step), 1);
-  pclose(pipe);
+  ASSERT_EQ(
+      std::sscanf(output.c_str(),
+                  "overlap %lf kinetic %lf residual %lf sweeps %lf contacts %d cpu [s] %*f, a step [ms] %lf,",
+                  &overlap, &kinetic, &residual, &sweeps, &contacts, &step),
+      6)
+      << output;
   EXPECT_LE(overlap, 0.01) << "of a diameter";
   EXPECT_LE(kinetic, 0.01) << "of the energy of the fall";
   EXPECT_GE(contacts, 3000) << "a grain in a pile has some three of its own";

@@ -10,23 +10,20 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <random>
 #include <string>
 #include <vector>
 
 namespace coupled_walls {
 namespace {
 
+using ilaw::testing::cross;
 using ilaw::testing::dot;
+using ilaw::testing::Random;
 using ilaw::testing::Vector;
 
 constexpr double restitution = 0.6, tangential_restitution = 0.3, h = 1e-3;
 
 enum class Kind { points, spheres, rigid, facets };
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 struct Side {
   std::vector<std::int32_t> bodies;
@@ -156,11 +153,10 @@ class Walls {
 
  private:
   Vector wall_of(const Contact& c) const { return has_wall ? c.wall : Vector{}; }
-  double uniform() { return std::uniform_real_distribution<double>(-1.0, 1.0)(random_); }
-  Vector any() { return {uniform(), uniform(), uniform()}; }
+  Vector any() { return random_.vector(); }
   // Arms of spheres are along the normal.
   Side side_of(std::int32_t body, const Vector& normal) {
-    const double along = uniform();
+    const double along = random_();
     const Vector arm = kind == Kind::points ? Vector{}
                        : kind == Kind::spheres
                            ? Vector{along * normal[0], along * normal[1], along * normal[2]}
@@ -189,7 +185,7 @@ class Walls {
 
   std::vector<double> tensors{1.0, 2.0, 1.5,  0.1, -0.2, 0.3, 0.7, 0.4, 0.6,
                               0.0, 0.1, -0.1, 3.0, 2.0,  4.0, 0.5, 0.2, 0.1};
-  std::mt19937 random_;
+  Random random_;
 };
 
 constexpr Kind kinds[] = {Kind::points, Kind::spheres, Kind::rigid, Kind::facets};

@@ -2,6 +2,8 @@
 // that the laws are incompatible. Whether a solution exists is decided case by case: both walls free, one
 // pressed, both pressed.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/random.hpp"
+
 #include <gtest/gtest.h>
 #include <ilaw/arrays.hpp>
 #include <ilaw/coupled.hpp>
@@ -10,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <random>
 
 namespace {
 
@@ -141,18 +142,17 @@ ilaw_coupled_report solve(const std::array<Wall, 2>& walls, Plane v) {
 }
 
 TEST(CoupledWedge, SolvesWhereASolutionExists) {
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  ilaw::testing::Random random(1);
   int solved = 0, has_none = 0, not_found = 0;
   for (int k = 0; k < 4000; ++k) {
     std::array<Wall, 2> walls;
     for (Wall& wall : walls) {
-      const double angle = 3.14159265358979 * uniform(random);
+      const double angle = 3.14159265358979 * random();
       wall.normal = {std::cos(angle), std::sin(angle)};
-      wall.friction = static_friction * std::pow(10.0, uniform(random));
-      wall.least_speed = k % 2 ? std::max(0.0, uniform(random)) : 0.0;
+      wall.friction = static_friction * random.decades(1.0);
+      wall.least_speed = k % 2 ? std::max(0.0, random()) : 0.0;
     }
-    const Plane v_free{uniform(random), uniform(random)};
+    const Plane v_free{random(), random()};
     const ilaw_coupled_report report = solve(walls, v_free);
     const bool exists = has_solution(walls[0], walls[1], v_free);
     if (report.law) {  // impulses grow without bound: no velocity suits both walls

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <regex>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -166,6 +168,24 @@ TEST(Layers, MachineryOfTheKitHasANamespaceOfItsOwn) {
       }
     }
   EXPECT_GT(namespaces, 10);
+}
+
+// The page lists the kit's headers by layers.
+TEST(Layers, PageNamesEveryHeaderOfTheKit) {
+  std::ifstream stream(fs::path(ILAW_SOURCE) / "docs/architecture.md");
+  const std::string page(std::istreambuf_iterator<char>(stream), {});
+  const std::size_t first = page.find("kit.hpp, plugin"), last = page.find("```", first);
+  ASSERT_NE(last, std::string::npos);
+  std::set<std::string> named, found;
+  static const std::regex name("[a-z_0-9]+");
+  const std::string list = page.substr(first, last - first);
+  for (std::sregex_iterator k(list.begin(), list.end(), name), end; k != end; ++k) named.insert(k->str());
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(ILAW_SOURCE) / "api/include/ilaw/kit"))
+    if (entry.is_regular_file()) {
+      found.insert(entry.path().stem());
+      EXPECT_TRUE(named.contains(entry.path().stem())) << entry.path() << " is not in docs/architecture.md";
+    }
+  EXPECT_GT(found.size(), 30U);
 }
 
 // The test itself: what it must refuse, and what not.

@@ -32,12 +32,13 @@ def lines_of(area):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--area", choices=sorted(AREAS), required=True)
+    parser.add_argument("--files", default="", help="only in files whose path matches this regular expression")
     parser.add_argument("--count", type=int, default=10)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     taken = {(one["file"], one["from"]) for one in json.loads(MUTANTS.read_text())}
-    free = [place for place in lines_of(options.area)
-            if not any(place[0] == file and text in place[2] for file, text in taken)]
+    free = [place for place in lines_of(options.area) if re.search(options.files, place[0])
+            and not any(place[0] == file and text in place[2] for file, text in taken)]
     for file, number, text in random.Random(options.seed).sample(free, options.count):
         print(f"{file}:{number}: {text}")
 

@@ -52,7 +52,7 @@ AREAS = {
     "check": Area("api/check", ["check_test"]),
     "host": Area("host_mock/host", ["host_test", "bars_test", "blocks_test", "bodies_test", "scene_keys_test",
                                     "closed_forms_test", "prestress_test", "mesh_test", "proximity_filter_test",
-                                    "keys_test", "checkpoint_test"]),
+                                    "keys_test", "checkpoint_test", "thermal_test"]),
     "results": Area("host_mock/host/results", ["forces_test", "fields_test", "summary_test", "runs_test",
                                                "checkpoint_test", "resume_test"]),
     "study": Area("host_mock/instruments/study", ["converge_test", "study_test"]),

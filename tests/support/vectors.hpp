@@ -21,6 +21,8 @@ inline Vector cross(const Vector& a, const Vector& b) {
 }
 // Across the unit vector n.
 inline Vector tangential(const Vector& a, const Vector& n) { return a - dot(a, n) * n; }
+// Of a vector in the local frame.
+inline double tangential_length(const Vector& a) { return std::hypot(a[1], a[2]); }
 
 inline Vector times(const Matrix& m, const Vector& a) { return {dot(m[0], a), dot(m[1], a), dot(m[2], a)}; }
 inline Matrix transposed(const Matrix& m) {

@@ -24,9 +24,10 @@ extern "C" {
 #pragma GCC visibility push(default)
 #endif
 
-/* All arrays hold doubles. Bodies that contacts name: grains, or nodes of a mesh. With ranks: first the
- * bodies that this rank owns, then copies of bodies that other ranks own. Masses and velocities are needed at
- * both. In dimensions 1 and 2 bodies do not rotate; a plane code with rotation passes three components. */
+/* All arrays of a call hold doubles, those of contacts and batches as well. Bodies that contacts name:
+ * grains, or nodes of a mesh. With ranks: first the bodies that this rank owns, then copies of bodies that
+ * other ranks own. Masses and velocities are needed at both. In dimensions 1 and 2 bodies do not rotate; a
+ * plane code with rotation passes three components. */
 typedef struct ilaw_bodies {
   uint32_t struct_size;
   uint32_t dimension;          /* d: 1, 2 or 3, that of all instances */

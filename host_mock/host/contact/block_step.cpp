@@ -3,7 +3,6 @@
 
 #include "contact/contact_geometry.hpp"
 #include "contact/law_faults.hpp"
-#include "contact/next_block.hpp"
 
 #include <ilaw/arrays.hpp>
 
@@ -17,6 +16,36 @@
 
 namespace ilaw::host {
 namespace {
+
+// Contacts that a step takes at once: as many as stay in the first caches.
+constexpr std::ptrdiff_t block_size = 192;  // below 256: statuses are counted in bytes
+
+// Whether values count up by one. Most often the last tells that they do not.
+bool follow_each_other(const std::int32_t* values, std::ptrdiff_t count) {
+  if (values[count - 1] - values[0] != count - 1) return false;
+  std::int32_t difference = 0;
+  for (std::ptrdiff_t i = 0; i < count; ++i)
+    difference |= values[i] - values[0] - static_cast<std::int32_t>(i);
+  return difference == 0;
+}
+
+struct Block {
+  NearContacts contacts;
+  bool in_row;  // they follow each other
+};
+
+// The contacts that make the next block: those that follow each other, where they are enough to be
+// worth a call of the law; what does not is copied to and fro.
+Block next_block(NearContacts contacts) {
+  constexpr std::ptrdiff_t enough = 24;
+  contacts.count = std::min(block_size, contacts.count);
+  if (follow_each_other(contacts.index, contacts.count)) return {contacts, true};
+  std::ptrdiff_t row = 1;
+  while (contacts.index[row] == contacts.index[row - 1] + 1) ++row;
+  if (row < enough) return {contacts, false};
+  contacts.count = row;
+  return {contacts, true};
+}
 
 enum class Meets { obstacle, turning_obstacle, partners };
 
@@ -70,12 +99,10 @@ class BlockWalk {
   Eigen::Index first_dof(std::ptrdiff_t i) const { return Eigen::Index{D} * node_[i]; }
 
   void locate() {
-    if constexpr (Partnered)
-      locate_partners();
-    else if (meets_plane())
+    if (meets_plane())
       locate_at_plane();
     else
-      locate_at_obstacle();
+      locate_each();
     if constexpr (Turns) find_turns();
     const InterfaceSetup& setup = step_.setup;
     if (setup.common_gap_offset != 0.0 || !setup.own_gap_offsets.empty())
@@ -83,11 +110,17 @@ class BlockWalk {
   }
   int node_index(std::ptrdiff_t i) const { return at_.node_index[contact(i)]; }
 
-  void locate_at_obstacle() {
-    std::array<std::int32_t, block_size> node_indices;
-    for (std::ptrdiff_t i = 0; i < count_; ++i) node_indices[i] = node_index(i);
-    step_.setup.counterpart->locate(node_indices.data(), count_, step_.step.u, step_.step.time,
-                                    {gap_.data(), normal_.data()});
+  void locate_each() {
+    for (std::ptrdiff_t i = 0; i < count_; ++i) {
+      const ContactPoint point =
+          step_.setup.counterpart->contact_point(node_index(i), step_.step.u, step_.step.time);
+      gap_[i] = point.gap;
+      for (int c = 0; c < D; ++c) normal_[D * i + c] = point.normal[c];
+      if constexpr (Partnered) {
+        at_.point[contact(i)] = point;
+        at_.delassus[contact(i)] = point.delassus(step_.inverse_mass, D, node_[i]);
+      }
+    }
   }
 
   // All nodes have the plane's normal: it is written once.
@@ -107,16 +140,6 @@ class BlockWalk {
         turn_before_[D * i + c] = turn.before[c];
         turn_after_[D * i + c] = turn.after[c];
       }
-    }
-  }
-
-  void locate_partners() {
-    for (std::ptrdiff_t i = 0; i < count_; ++i) {
-      ContactPoint& point = at_.point[contact(i)];
-      point = step_.setup.counterpart->contact_point(node_index(i), step_.step.u, step_.step.time);
-      gap_[i] = point.gap;
-      for (int c = 0; c < D; ++c) normal_[D * i + c] = point.normal[c];
-      at_.delassus[contact(i)] = point.delassus(step_.inverse_mass, D, node_[i]);
     }
   }
 

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace ilaw::host {
@@ -31,6 +32,12 @@ class ContactHeat {
   // Sum of the weights of each node of the model in all contacts that conduct, where contacts share nodes;
   // the array must stay.
   void share(const double* sums_of_weights) { sums_of_weights_ = sums_of_weights; }
+  // Whether the law reads a field.
+  bool reads(std::string_view field) const {
+    for (std::size_t k = 0; k < inputs_.size(); ++k)
+      if (field == field_names[k]) return inputs_[k] >= 0;
+    return false;
+  }
   bool conducts() const { return amounts_[2] >= 0; }
   // Before the contacts of a step.
   void open(double time, std::size_t contact_count, const std::vector<std::int32_t>& active);

@@ -13,6 +13,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace ilaw::host {
@@ -38,21 +39,6 @@ struct ContactPoint {
   // H along an axis: inverse_mass is 1/m, or less where loads take a part of an impulse, per degree of
   // freedom.
   double delassus(const double* inverse_mass, int dimension, int node, int axis = 0) const;
-};
-
-// The steps before and after a time.
-struct Steps {
-  double since, time, until;
-};
-
-// How fast a rigid counterpart turns in the steps before and after a time.
-struct TurningRates {
-  TurningRate before, after;
-};
-
-// Gaps of some contacts, and normals, of as many components each as the model has dimensions.
-struct Located {
-  double *gaps, *normals;
 };
 
 // The axis along which a vector lies; D where it is none.
@@ -99,41 +85,30 @@ class Counterpart {
  public:
   virtual ~Counterpart() = default;
 
-  // The contact point of the node at node_index in the interface's list.
+  // Where a node of the interface is, by node_index in its list, and its contact point.
+  Vector position(int node_index, const Dofs& u) const;
   virtual ContactPoint contact_point(int node_index, const Dofs& u, double time) const = 0;
-  // The same of count nodes at once, where the counterpart is rigid.
-  virtual void locate(const std::int32_t* node_indices, std::ptrdiff_t count, const Dofs& u, double time,
-                      Located found) const;
   // A bound from below on the gap, cheap, that relative motion by a distance lowers by no more than
   // the distance.
-  virtual double gap_bound(int node_index, const Dofs& u, double time) const = 0;
+  virtual double gap_bound(int node_index, const Dofs& u, double time) const {
+    return contact_point(node_index, u, time).gap;
+  }
   // The same of count nodes from the first on; several threads may ask at once.
   virtual void gap_bounds(int first, int count, const Dofs& u, double time, double* bounds) const;
-  // A rigid counterpart that is flat.
-  virtual std::optional<FlatSurface> flat_at(double /*time*/) const { return {}; }
   // Called before the gap bounds of all nodes are taken anew.
   virtual void refresh(const Dofs& /*u*/) {}
   // How far nodes and counterpart may approach before the next refresh.
   virtual double validity() const { return std::numeric_limits<double>::infinity(); }
 
-  // Mean velocity of a rigid counterpart between two times.
-  virtual Vector velocity(double from, double to) const = 0;
-  // Whether it is rigid and its surface moves along itself, too; then how fast it turns, and the
-  // velocity of its surface at rate 1, where a node meets it.
-  virtual bool turns() const { return false; }
-  virtual TurningRates rates(const Steps& /*steps*/) const { return {}; }
-  // How fast a plane that tilts nears any of the nodes at most, between two times, beside its velocity.
-  virtual double tilting_speed(double /*from*/, double /*to*/, const Dofs& /*u*/) const { return 0.0; }
-  // Whether its velocity, how it turns and where it is flat are the same in all steps.
-  virtual bool stands_still() const { return true; }
-  virtual SurfaceTurn unit_turn(int /*node_index*/, const Dofs& /*u*/, double /*time*/,
-                                const RigidSurface& /*there*/) const {
-    return {};
+  // Null where the nodes meet another body.
+  virtual const Obstacle* obstacle() const { return nullptr; }
+  bool turns() const { return obstacle() && obstacle()->turns(); }
+  // An obstacle that is a plane.
+  std::optional<FlatSurface> flat_at(double time) const {
+    return obstacle() ? obstacle()->flat_at(time) : std::nullopt;
   }
-  // A direction that turns with it, between two times.
-  virtual Vector turned(const Vector& direction, double /*from*/, double /*to*/) const { return direction; }
-  // Nodes that may be partners; empty for rigid counterparts.
-  virtual const std::vector<int>& partners() const = 0;
+  // Nodes that may be partners; empty for obstacles.
+  const std::vector<int>& partners() const { return partners_; }
   // After a step: whether the law of a node was not ILAW_FREE, and where the node was.
   virtual void note_contact(int /*node_index*/, bool /*touches*/, const ContactPoint& /*point*/) {}
   // Whether it touched and has not left since. Such nodes must be evaluated in every step.
@@ -144,6 +119,13 @@ class Counterpart {
   // Whether two contacts may have a partner in common.
   virtual bool shares_partners() const { return false; }
   virtual bool keeps_normal() const { return false; }
+
+ protected:
+  Counterpart(const Model& model, std::vector<int> nodes, std::vector<int> partners)
+      : model_(model), nodes_(std::move(nodes)), partners_(std::move(partners)) {}
+
+  const Model& model_;
+  std::vector<int> nodes_, partners_;
 };
 
 // Velocities of a turning surface in the steps before and after a time, where a node meets it.
@@ -153,7 +135,8 @@ struct SurfaceVelocities {
 inline SurfaceVelocities surface_velocities(const Counterpart& counterpart, int node_index, const Dofs& u,
                                             double time, const RigidSurface& there,
                                             const TurningRates& rates) {
-  const SurfaceTurn turn = counterpart.unit_turn(node_index, u, time, there);
+  const SurfaceTurn turn =
+      counterpart.obstacle()->unit_velocity(counterpart.position(node_index, u), there, time);
   return {turn.at(rates.before), turn.at(rates.after)};
 }
 
@@ -163,62 +146,32 @@ void turn_axis(const Counterpart& counterpart, Eigen::Index dimension, double fr
                Number number) {
   Vector axis(dimension);
   for (Eigen::Index c = 0; c < dimension; ++c) axis[c] = number(static_cast<std::size_t>(c));
-  axis = counterpart.turned(axis, from, to);
+  axis = counterpart.obstacle()->turned(axis, from, to);
   for (Eigen::Index c = 0; c < dimension; ++c) number(static_cast<std::size_t>(c)) = axis[c];
 }
 
-// A rigid obstacle.
 class RigidCounterpart : public Counterpart {
  public:
-  RigidCounterpart(const Model& model, std::vector<int> nodes, std::unique_ptr<const Obstacle> obstacle);
+  RigidCounterpart(const Model& model, std::vector<int> nodes, std::unique_ptr<const Obstacle> obstacle)
+      : Counterpart(model, std::move(nodes), {}), obstacle_(std::move(obstacle)) {}
   ContactPoint contact_point(int node_index, const Dofs& u, double time) const override;
-  void locate(const std::int32_t* node_indices, std::ptrdiff_t count, const Dofs& u, double time,
-              Located found) const override;
-  double gap_bound(int node_index, const Dofs& u, double time) const override;
   void gap_bounds(int first, int count, const Dofs& u, double time, double* bounds) const override;
-  std::optional<FlatSurface> flat_at(double time) const override { return obstacle_->flat_at(time); }
-  Vector velocity(double from, double to) const override { return obstacle_->velocity(from, to); }
-  bool turns() const override { return obstacle_->turns(); }
-  TurningRates rates(const Steps& steps) const override {
-    return {obstacle_->rate_before(steps.since, steps.time), obstacle_->rate_after(steps.time, steps.until)};
-  }
-  SurfaceTurn unit_turn(int node_index, const Dofs& u, double time,
-                        const RigidSurface& there) const override {
-    return obstacle_->unit_velocity(position(node_index, u), there, time);
-  }
-  Vector turned(const Vector& direction, double from, double to) const override {
-    return obstacle_->turned(direction, from, to);
-  }
-  double tilting_speed(double from, double to, const Dofs& u) const override;
-  bool stands_still() const override { return obstacle_->stands_still(); }
-  const std::vector<int>& partners() const override { return none_; }
+  const Obstacle* obstacle() const override { return obstacle_.get(); }
   bool keeps_normal() const override { return obstacle_->is_flat(); }
 
  private:
-  Vector position(int node_index, const Dofs& u) const;
-  void gaps_to(const FlatSurface& flat, const std::int32_t* nodes, std::ptrdiff_t count, const Dofs& u,
-               double* gaps) const;
-
-  const Model& model_;
-  std::vector<int> nodes_, none_;
   std::unique_ptr<const Obstacle> obstacle_;
 };
 
 // One other node for each node, across a given normal.
 class NodeCounterpart : public Counterpart {
  public:
-  NodeCounterpart(const Model& model, std::vector<int> nodes, std::vector<int> partners, Vector normal);
+  NodeCounterpart(const Model& model, std::vector<int> nodes, std::vector<int> partners, Vector normal)
+      : Counterpart(model, std::move(nodes), std::move(partners)), normal_(std::move(normal)) {}
   ContactPoint contact_point(int node_index, const Dofs& u, double time) const override;
-  double gap_bound(int node_index, const Dofs& u, double time) const override {
-    return contact_point(node_index, u, time).gap;
-  }
-  Vector velocity(double /*from*/, double /*to*/) const override { return Vector::Zero(model_.dimension()); }
-  const std::vector<int>& partners() const override { return partners_; }
   bool keeps_normal() const override { return true; }
 
  private:
-  const Model& model_;
-  std::vector<int> nodes_, partners_;
   Vector normal_;
 };
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact/coupled_interface.hpp"
 
+#include "base/words.hpp"
 #include "contact/contact_geometry.hpp"
 #include "contact/law_faults.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 namespace ilaw::host {
@@ -118,11 +117,9 @@ void CoupledInterface::check_driven(const StepView& step, const Dofs& v) const {
     const double largest = given_way.cwiseAbs().maxCoeff(&axis);
     if (!(largest > noticeable * std::max(speed, std::abs(interface_.gap(k)) / step.dt))) continue;
     if (largest < 0.5 * std::abs(v_free_of(place, v)[axis])) continue;
-    std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(),
-                  "node %d is driven along axis %td against '%s' (law '%s'), which cannot give way",
-                  interface_.node_of(k), axis, interface_.name().c_str(), interface_.setup().law.c_str());
-    throw std::runtime_error(text.data());
+    throw std::runtime_error(
+        formatted("node %d is driven along axis %td against '%s' (law '%s'), which cannot give way",
+                  interface_.node_of(k), axis, interface_.name().c_str(), interface_.setup().law.c_str()));
   }
 }
 

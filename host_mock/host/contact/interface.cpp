@@ -4,14 +4,13 @@
 #include "base/large_pages.hpp"
 #include "base/parallel.hpp"
 #include "base/running_law.hpp"
+#include "base/words.hpp"
 #include "contact/contact_geometry.hpp"
 #include "contact/law_faults.hpp"
 #include "contact/plain_step.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -53,11 +52,11 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
 void Interface::check(const Refusal& refusal, double dt) const {
   if (refusal.code == ILAW_OK) return;
   if (refusal.contact < 0) return check(refusal, "");
-  std::array<char, 128> given{};
+  std::string node = std::to_string(node_of(refusal.contact));
   if (refusal.code == ILAW_BAD_NODES)
-    std::snprintf(given.data(), given.size(), " (H = %.6g, area %.6g, step %.6g)", delassus(refusal.contact),
-                  setup_.areas[at(node_index_of(refusal.contact))], dt);
-  check(refusal, std::to_string(node_of(refusal.contact)) + given.data());
+    node += formatted(" (H = %.6g, area %.6g, step %.6g)", delassus(refusal.contact),
+                      setup_.areas[at(node_index_of(refusal.contact))], dt);
+  check(refusal, node);
 }
 
 void Interface::check(const Refusal& refusal, const std::string& node) const {

@@ -116,9 +116,7 @@ Projection project(const Vector3d& p, const Corners& x) {
 }  // namespace
 
 MeshSurface::MeshSurface(const Model& model, std::vector<int> nodes, const NodeSet& surface)
-    : model_(model),
-      nodes_(std::move(nodes)),
-      partners_(surface.nodes),
+    : Counterpart(model, std::move(nodes), surface.nodes),
       facets_(surface.facets),
       nearest_(nodes_.size()),
       bound_(nodes_.size()),
@@ -130,7 +128,7 @@ MeshSurface::MeshSurface(const Model& model, std::vector<int> nodes, const NodeS
   for (const Facet& facet : facets_)
     for (std::size_t k = 0; k < 4; ++k)
       if (const int a = facet[k], b = facet[(k + 1) % 4]; a != b)
-        shortest_edge_ = std::min(shortest_edge_, (position(a, undeformed) - position(b, undeformed)).norm());
+        shortest_edge_ = std::min(shortest_edge_, (place_of(a, undeformed) - place_of(b, undeformed)).norm());
   MeshSurface::refresh(undeformed);
 }
 
@@ -175,19 +173,19 @@ void MeshSurface::load(std::istream& in) {
   if (held_.size() != nodes_.size()) refuse_damaged();
 }
 
-Vector3d MeshSurface::position(int node, const Dofs& u) const {
+Vector3d MeshSurface::place_of(int node, const Dofs& u) const {
   return model_.position().segment<3>(3 * Eigen::Index{node}) + u.segment<3>(3 * Eigen::Index{node});
 }
 
 Vector3d MeshSurface::center(const Facet& facet, const Dofs& u) const {
   return 0.25 *
-         (position(facet[0], u) + position(facet[1], u) + position(facet[2], u) + position(facet[3], u));
+         (place_of(facet[0], u) + place_of(facet[1], u) + place_of(facet[2], u) + place_of(facet[3], u));
 }
 
 double MeshSurface::radius(const Facet& facet, const Dofs& u) const {
   const Vector3d middle = center(facet, u);
   double largest = 0.0;
-  for (const int node : facet) largest = std::max(largest, (position(node, u) - middle).norm());
+  for (const int node : facet) largest = std::max(largest, (place_of(node, u) - middle).norm());
   return largest;
 }
 
@@ -202,7 +200,7 @@ void MeshSurface::refresh(const Dofs& u) {
   }
 #pragma omp parallel for schedule(static) if (nodes_.size() * facets_.size() > 100000)
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
-    const Vector3d p = position(nodes_[k], u);
+    const Vector3d p = place_of(nodes_[k], u);
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t f = 0; f < centers.size(); ++f)
       if (const double square = (p - centers[f]).squaredNorm(); square < least) {
@@ -211,7 +209,7 @@ void MeshSurface::refresh(const Dofs& u) {
       }
     const Facet& facet = facets_[nearest_[k]];
     const Vector3d normal =
-        (position(facet[2], u) - position(facet[0], u)).cross(position(facet[3], u) - position(facet[1], u));
+        (place_of(facet[2], u) - place_of(facet[0], u)).cross(place_of(facet[3], u) - place_of(facet[1], u));
     const bool in_front = normal.dot(p - centers[nearest_[k]]) > 0.0;
     bound_[k] = in_front ? std::sqrt(least) - largest_radius : -std::numeric_limits<double>::infinity();
   }
@@ -223,13 +221,13 @@ double MeshSurface::gap_bound(int node_index, const Dofs& /*u*/, double /*time*/
 
 ContactPoint MeshSurface::contact_point(int node_index, const Dofs& u, double /*time*/) const {
   const auto k = static_cast<std::size_t>(node_index);
-  const Vector3d p = position(nodes_[k], u);
+  const Vector3d p = place_of(nodes_[k], u);
   Projection best{};
   std::size_t facet = nearest_[k];
   best.distance = std::numeric_limits<double>::infinity();
   for (const std::size_t f : neighbours_[nearest_[k]]) {
-    const Corners corners{position(facets_[f][0], u), position(facets_[f][1], u), position(facets_[f][2], u),
-                          position(facets_[f][3], u)};
+    const Corners corners{place_of(facets_[f][0], u), place_of(facets_[f][1], u), place_of(facets_[f][2], u),
+                          place_of(facets_[f][3], u)};
     const Projection projection =
         is_triangle(facets_[f]) ? project_on_triangle(p, corners) : project(p, corners);
     if (projection.distance < best.distance) {

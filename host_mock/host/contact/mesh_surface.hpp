@@ -23,8 +23,6 @@ class MeshSurface : public Counterpart {
   double gap_bound(int node_index, const Dofs& u, double time) const override;
   void refresh(const Dofs& u) override;
   double validity() const override { return 0.5 * shortest_edge_; }
-  Vector velocity(double /*from*/, double /*to*/) const override { return Vector::Zero(3); }
-  const std::vector<int>& partners() const override { return partners_; }
   bool shares_partners() const override { return true; }
   void note_contact(int node_index, bool touches, const ContactPoint& point) override;
   bool is_held(int node_index) const override { return held_[static_cast<std::size_t>(node_index)] != 0; }
@@ -33,14 +31,12 @@ class MeshSurface : public Counterpart {
 
  private:
   using Facet = std::array<int, 4>;
-  Eigen::Vector3d position(int node, const Dofs& u) const;
+  Eigen::Vector3d place_of(int node, const Dofs& u) const;
   Eigen::Vector3d center(const Facet& facet, const Dofs& u) const;
   double radius(const Facet& facet, const Dofs& u) const;
   void find_neighbours();
   void find_border();
 
-  const Model& model_;
-  std::vector<int> nodes_, partners_;
   std::vector<Facet> facets_;
   std::vector<std::array<bool, 4>>
       border_;  // whether an edge of a facet, from corner k to k + 1, is of no other

@@ -27,6 +27,8 @@ class ObstacleMotion {
   const Vector& tangent() const { return tangent_; }
 
  private:
+  double tilting_speed(double from, double to, const Dofs& u) const;
+
   const InterfaceSetup& setup_;
   Vector velocity_, velocity_before_, tangent_;
   double speed_ = 0.0, speed_before_ = 0.0;

@@ -31,10 +31,7 @@ class Cell {
 
   std::size_t corners() const { return static_cast<std::size_t>(count_); }
 
-  Vector at(std::size_t corner, const Dofs& u) const {
-    const Eigen::Index d = model_.dimension(), dof = d * nodes_[corner];
-    return model_.position().segment(dof, d) + u.segment(dof, d);
-  }
+  Vector at(std::size_t corner, const Dofs& u) const { return model_.position(nodes_[corner], u); }
   bool is_inverted(const Dofs& u) const {
     if (model_.dimension() == 1) return !(at(1, u)[0] > at(0, u)[0]);
     for (std::size_t k = 0; k < corners(); ++k) {

@@ -7,19 +7,6 @@ namespace ilaw::host {
 
 const std::vector<int> Load::none_;
 
-Gravity::Gravity(const Model& model, std::vector<int> nodes, Vector acceleration, Table history)
-    : model_(model),
-      nodes_(std::move(nodes)),
-      acceleration_(std::move(acceleration)),
-      history_(std::move(history)) {}
-
-void Gravity::add_force(double time, const Dofs& /*u*/, Dofs& force) const {
-  const Vector acceleration = history_.at(time)[0] * acceleration_;
-  const Eigen::Index d = acceleration.size();
-  for (int node : nodes_)
-    force.segment(node * d, d) += model_.mass().segment(node * d, d).cwiseProduct(acceleration);
-}
-
 Force::Force(std::vector<int> nodes, std::vector<double> shares, Vector direction, Table history)
     : nodes_(std::move(nodes)),
       shares_(std::move(shares)),
@@ -28,9 +15,8 @@ Force::Force(std::vector<int> nodes, std::vector<double> shares, Vector directio
 
 void Force::add_force(double time, const Dofs& /*u*/, Dofs& force) const {
   const Eigen::Index d = direction_.size();
-  const double size = history_.at(time)[0];
-  for (std::size_t k = 0; k < nodes_.size(); ++k)
-    force.segment(nodes_[k] * d, d) += size * shares_[k] * direction_;
+  const Vector whole = history_.at(time)[0] * direction_;
+  for (std::size_t k = 0; k < nodes_.size(); ++k) force.segment(nodes_[k] * d, d) += shares_[k] * whole;
 }
 
 Shock::Shock(std::vector<int> nodes, double time, Vector impulse)

@@ -62,26 +62,14 @@ class Load {
 
 using Loads = std::vector<std::unique_ptr<Load>>;
 
-class Gravity : public Load {
- public:
-  // history: a factor.
-  Gravity(const Model& model, std::vector<int> nodes, Vector acceleration, Table history);
-  void add_force(double time, const Dofs& u, Dofs& force) const override;
-  bool is_steady() const override { return history_.is_constant(); }
-
- private:
-  const Model& model_;
-  std::vector<int> nodes_;
-  Vector acceleration_;
-  Table history_;
-};
-
-// A force along a direction, of a size that follows a table.
+// A force along a direction, of a size that follows a table. Gravity is one: an acceleration is the
+// direction, the share of a node its mass.
 class Force : public Load {
  public:
   // The size times its share acts on each node.
   Force(std::vector<int> nodes, std::vector<double> shares, Vector direction, Table history);
   void add_force(double time, const Dofs& u, Dofs& force) const override;
+  bool is_steady() const override { return history_.is_constant(); }
 
  private:
   std::vector<int> nodes_;

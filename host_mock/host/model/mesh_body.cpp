@@ -14,8 +14,9 @@
 namespace ilaw::host {
 namespace {
 
-// Elements that are worth a thread.
+// Elements that are worth a thread; in a box below fewest_in_box threads cost more than they bring.
 constexpr std::ptrdiff_t element_chunk = 128;
+constexpr std::size_t fewest_in_box = 512;
 
 // Corners of the reference cube, in VTK's order.
 constexpr std::array<std::array<int, 3>, 8> reference_corners{
@@ -111,6 +112,72 @@ double largest_eigenvalue(const std::vector<SolidElement<N, P>>& elements, const
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
 }
 
+// ---- boxes ----------------------------------------------------------------------------------------------
+
+using StrainMatrix = Eigen::Matrix<double, 6, 24>;
+
+// Strain-displacement matrix of linear elasticity, engineering shear strains.
+StrainMatrix strain_matrix(const Eigen::Matrix<double, 3, 8>& gradients) {
+  StrainMatrix b = StrainMatrix::Zero();
+  for (int a = 0; a < 8; ++a) {
+    const double x = gradients(0, a), y = gradients(1, a), z = gradients(2, a);
+    b.block<6, 3>(0, 3 * a) << x, 0, 0, 0, y, 0, 0, 0, z, y, x, 0, 0, z, y, z, 0, x;
+  }
+  return b;
+}
+
+// B at all integration points; with mean dilatation the dilatational part of each is the mean (B-bar,
+// Hughes 1980).
+std::array<StrainMatrix, 8> strain_matrices(const Hexahedron& box, Element element) {
+  using Row = Eigen::Matrix<double, 1, 24>;
+  std::array<StrainMatrix, 8> matrices;
+  Row mean = Row::Zero();
+  for (std::size_t g = 0; g < 8; ++g) {
+    matrices[g] = strain_matrix(box.gradients[g]);
+    mean += 0.125 * matrices[g].topRows<3>().colwise().sum();
+  }
+  if (element == Element::mean_dilatation)
+    for (StrainMatrix& b : matrices) {
+      const Row missing = (mean - b.topRows<3>().colwise().sum()) / 3.0;
+      b.topRows<3>().rowwise() += missing;
+    }
+  return matrices;
+}
+
+Eigen::Matrix<double, 6, 6> elasticity(const Material& material) {
+  Eigen::Matrix<double, 6, 6> c = Eigen::Matrix<double, 6, 6>::Zero();
+  c.topLeftCorner<3, 3>().setConstant(material.lame());
+  c.diagonal().head<3>().array() += 2.0 * material.shear_modulus();
+  c.diagonal().tail<3>().setConstant(material.shear_modulus());
+  return c;
+}
+
+Eigen::Matrix<double, 24, 24> stiffness_of_box(const Hexahedron& box, const Material& material,
+                                               Element element) {
+  Eigen::Matrix<double, 24, 24> stiffness = Eigen::Matrix<double, 24, 24>::Zero();
+  for (const StrainMatrix& b : strain_matrices(box, element))
+    stiffness += box.weights[0] * b.transpose() * elasticity(material) * b;
+  return 0.5 * (stiffness + stiffness.transpose());  // to the last bit
+}
+
+// The gradients of a product of linear functions.
+Hexahedron box_element(const Eigen::Vector3d& size) {
+  Hexahedron box{{}, {}, {}, size.prod()};
+  box.weights.fill(size.prod() / 8.0);
+  for (std::size_t g = 0; g < 8; ++g) {
+    const auto shape = [&](std::size_t corner, std::size_t axis) {  // of one direction, at the Gauss point
+      const double at = 0.5 + 0.5 * reference_corners[g][axis] / std::sqrt(3.0);
+      return reference_corners[corner][axis] < 0 ? 1.0 - at : at;
+    };
+    for (std::size_t a = 0; a < 8; ++a)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        box.gradients[g](static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(a)) =
+            reference_corners[a][axis] / size[static_cast<Eigen::Index>(axis)] * shape(a, (axis + 1) % 3) *
+            shape(a, (axis + 2) % 3);
+  }
+  return box;
+}
+
 template <int N>
 std::array<int, N> shifted(std::array<int, N> nodes, int by) {
   for (int& node : nodes) node += by;
@@ -136,23 +203,32 @@ Tetrahedron tetrahedron_of(const std::array<int, 4>& nodes, const Dofs& position
 
 MeshBody::MeshBody(const MeshTopology& topology, const Dofs& position, int first, const Material& material,
                    Element element)
-    : first_(first), material_(material), element_(element) {
-  for (const auto& nodes : topology.hexahedra)
-    hexahedra_.push_back(hexahedron_of(shifted<8>(nodes, first), position));
+    : first_(first),
+      material_(material),
+      element_(element),
+      layer_(topology.layer),
+      node_count_(static_cast<int>(topology.sets.at("").nodes.size())) {
+  for (const auto& nodes : topology.hexahedra) hexahedra_.push_back(shifted<8>(nodes, first));
+  if (is_box()) {
+    shapes_.push_back(box_element(topology.element_size));
+    stiffness_ = stiffness_of_box(shapes_[0], material, element);
+    return;
+  }
+  for (const auto& nodes : hexahedra_) shapes_.push_back(hexahedron_of(nodes, position));
   for (const auto& nodes : topology.tetrahedra)
     tetrahedra_.push_back(tetrahedron_of(shifted<4>(nodes, first), position));
-  index_corners(static_cast<int>(topology.sets.at("").nodes.size()));
+  index_corners();
   corner_forces_.resize(3, static_cast<Eigen::Index>(corners_.size()));
   if (!averages_at_nodes()) return;
   nodal_.resize(first_corner_.size() - 1);
   tetrahedron_gradients_.resize(tetrahedra_.size());
 }
 
-void MeshBody::index_corners(int node_count) {
-  std::vector<std::vector<std::size_t>> of_node(static_cast<std::size_t>(node_count));
+void MeshBody::index_corners() {
+  std::vector<std::vector<std::size_t>> of_node(static_cast<std::size_t>(node_count_));
   std::size_t corner = 0;
-  for (const Hexahedron& element : hexahedra_)
-    for (const int node : element.nodes) of_node[static_cast<std::size_t>(node - first_)].push_back(corner++);
+  for (const std::array<int, 8>& nodes : hexahedra_)
+    for (const int node : nodes) of_node[static_cast<std::size_t>(node - first_)].push_back(corner++);
   for (const Tetrahedron& element : tetrahedra_)
     for (const int node : element.nodes) of_node[static_cast<std::size_t>(node - first_)].push_back(corner++);
   for (const std::vector<std::size_t>& corners : of_node) {
@@ -163,20 +239,29 @@ void MeshBody::index_corners(int node_count) {
 }
 
 void MeshBody::add_mass(Dofs& mass) const {
-  const auto add = [&](const auto& elements) {
-    for (const auto& element : elements) {
-      const auto volumes = lumped_volumes(element);
-      for (std::size_t a = 0; a < element.nodes.size(); ++a)
-        mass.segment<3>(3 * Eigen::Index{element.nodes[a]}).array() +=
-            material_.density * volumes[static_cast<Eigen::Index>(a)];
-    }
+  if (is_box()) {  // whole numbers of eighths: to the last bit
+    for (const std::array<int, 8>& nodes : hexahedra_)
+      for (const int node : nodes) mass.segment<3>(3 * Eigen::Index{node}).array() += 0.125;
+    mass.segment(3 * Eigen::Index{first_}, 3 * node_count_) *= material_.density * shapes_[0].volume;
+    return;
+  }
+  const auto add = [&](const auto& nodes, const auto& volumes) {
+    for (std::size_t a = 0; a < nodes.size(); ++a)
+      mass.segment<3>(3 * Eigen::Index{nodes[a]}).array() +=
+          material_.density * volumes[static_cast<Eigen::Index>(a)];
   };
-  add(hexahedra_);
-  add(tetrahedra_);
+  for (std::size_t k = 0; k < hexahedra_.size(); ++k) add(hexahedra_[k], lumped_volumes(shapes_[k]));
+  for (const Tetrahedron& element : tetrahedra_) add(element.nodes, lumped_volumes(element));
 }
 
 double MeshBody::critical_step() const {
-  return 2.0 / std::sqrt(std::max(largest_eigenvalue(hexahedra_, material_, element_),
+  if (is_box()) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 24, 24>> modes(stiffness_,
+                                                                             Eigen::EigenvaluesOnly);
+    const double corner_mass = shapes_[0].weights[0] * material_.density;
+    return 2.0 / std::sqrt(modes.eigenvalues().maxCoeff() / corner_mass);
+  }
+  return 2.0 / std::sqrt(std::max(largest_eigenvalue(shapes_, material_, element_),
                                   largest_eigenvalue(tetrahedra_, material_, Element::full)));
 }
 
@@ -213,7 +298,7 @@ void MeshBody::find_nodal_dilatations(const Dofs& u) const {
   };
   each(tetrahedra_.size(), [&](std::size_t e) {
     Eigen::Matrix3d& gradient = tetrahedron_gradients_[e];
-    gradient = gather(tetrahedra_[e], u) * tetrahedra_[e].gradients[0].transpose();
+    gradient = gather(tetrahedra_[e].nodes, u) * tetrahedra_[e].gradients[0].transpose();
     if (!linear) gradient += Eigen::Matrix3d::Identity();
   });
   each(nodal_.size(), [&](std::size_t node) {
@@ -267,15 +352,44 @@ double MeshBody::nodal_energy(const Dofs& u) const {
 
 // ---- the body as a whole --------------------------------------------------------------------------------
 
+DeformedElement<8, 8> MeshBody::deformed_hexahedron(std::size_t number, const Dofs& u) const {
+  return {shape(number), gather(hexahedra_[number], u), material_, element_};
+}
+
+MeshBody::CornerForces MeshBody::hexahedron_force(std::size_t number, const Dofs& u) const {
+  if (!keeps_stiffness()) return deformed_hexahedron(number, u).force();
+  CornerForces force;
+  force.reshaped() = stiffness_ * gather(hexahedra_[number], u).reshaped();
+  return force;
+}
+
+double MeshBody::hexahedron_energy(std::size_t number, const Dofs& u) const {
+  if (!keeps_stiffness()) return deformed_hexahedron(number, u).energy();
+  const Eigen::Matrix<double, 24, 1> local = gather(hexahedra_[number], u).reshaped();
+  return 0.5 * local.dot(stiffness_ * local);
+}
+
+void MeshBody::add_box_forces(const Dofs& u, Dofs& force) const {
+  [[maybe_unused]] const bool many = hexahedra_.size() >= fewest_in_box;
+  const std::size_t layers = hexahedra_.size() / layer_;
+  for (std::size_t parity = 0; parity < 2; ++parity) {
+#pragma omp parallel for schedule(static) if (many)
+    for (std::size_t layer = parity; layer < layers; layer += 2)
+      for (std::size_t k = layer * layer_; k < (layer + 1) * layer_; ++k) {
+        const CornerForces forces = hexahedron_force(k, u);
+        for (std::size_t a = 0; a < 8; ++a)
+          force.segment<3>(3 * Eigen::Index{hexahedra_[k][a]}) -= forces.col(static_cast<Eigen::Index>(a));
+      }
+  }
+}
+
 void MeshBody::add_internal_forces(const Dofs& u, Dofs& force) const {
+  if (is_box()) return add_box_forces(u, force);
   if (averages_at_nodes()) find_nodal_dilatations(u);
   const auto hexahedra = static_cast<std::ptrdiff_t>(hexahedra_.size());
   for_each_chunk(hexahedra, element_chunk, [&](std::ptrdiff_t, std::ptrdiff_t begin, std::ptrdiff_t end) {
-    for (std::ptrdiff_t k = begin; k < end; ++k) {
-      const Hexahedron& element = hexahedra_[static_cast<std::size_t>(k)];
-      corner_forces_.middleCols<8>(8 * k) =
-          DeformedElement<8, 8>(element, gather(element, u), material_, element_).force();
-    }
+    for (std::ptrdiff_t k = begin; k < end; ++k)
+      corner_forces_.middleCols<8>(8 * k) = hexahedron_force(static_cast<std::size_t>(k), u);
   });
   const auto tetrahedra = static_cast<std::ptrdiff_t>(tetrahedra_.size());
   for_each_chunk(tetrahedra, element_chunk, [&](std::ptrdiff_t, std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -285,7 +399,7 @@ void MeshBody::add_internal_forces(const Dofs& u, Dofs& force) const {
       if (averages_at_nodes())
         forces = element.volume * nodal_stress(static_cast<std::size_t>(k)) * element.gradients[0];
       else
-        forces = DeformedElement<4, 1>(element, gather(element, u), material_, element_).force();
+        forces = DeformedElement<4, 1>(element, gather(element.nodes, u), material_, element_).force();
     }
   });
   const auto nodes = static_cast<std::ptrdiff_t>(first_corner_.size()) - 1;
@@ -297,27 +411,26 @@ void MeshBody::add_internal_forces(const Dofs& u, Dofs& force) const {
   });
 }
 
-double MeshBody::potential(const Dofs& u) const {
-  double sum = 0.0;
-  for (const Hexahedron& element : hexahedra_)
-    sum += DeformedElement<8, 8>(element, gather(element, u), material_, element_).energy();
-  if (averages_at_nodes()) return sum + nodal_energy(u);
+void MeshBody::add_potential(const Dofs& u, double& sum) const {
+  for (std::size_t k = 0; k < hexahedra_.size(); ++k) sum += hexahedron_energy(k, u);
+  if (averages_at_nodes()) {
+    sum += nodal_energy(u);
+    return;
+  }
   for (const Tetrahedron& element : tetrahedra_)
-    sum += DeformedElement<4, 1>(element, gather(element, u), material_, element_).energy();
-  return sum;
+    sum += DeformedElement<4, 1>(element, gather(element.nodes, u), material_, element_).energy();
 }
 
 void MeshBody::add_stresses(const Dofs& u, std::vector<Eigen::Matrix3d>& of_hexahedra,
                             std::vector<Eigen::Matrix3d>& of_tetrahedra) const {
-  for (const Hexahedron& element : hexahedra_)
-    of_hexahedra.push_back(
-        DeformedElement<8, 8>(element, gather(element, u), material_, element_).mean_stress());
+  for (std::size_t k = 0; k < hexahedra_.size(); ++k)
+    of_hexahedra.push_back(deformed_hexahedron(k, u).mean_stress());
   if (averages_at_nodes()) find_nodal_dilatations(u);
   for (std::size_t e = 0; e < tetrahedra_.size(); ++e) {
     const Tetrahedron& element = tetrahedra_[e];
     if (!averages_at_nodes()) {
       of_tetrahedra.push_back(
-          DeformedElement<4, 1>(element, gather(element, u), material_, element_).mean_stress());
+          DeformedElement<4, 1>(element, gather(element.nodes, u), material_, element_).mean_stress());
       continue;
     }
     const Eigen::Matrix3d& F = tetrahedron_gradients_[e];

@@ -1,5 +1,10 @@
-// mesh_body.hpp - the elements of one body with a mesh of its own: 8-node hexahedra with 2x2x2 integration,
-// as in blocks.hpp but of any shape, and 4-node tetrahedra with constant strain.
+// mesh_body.hpp - the elements of one solid body: 8-node hexahedra and 4-node tetrahedra with constant
+// strain.
+//
+// Hexahedra have full 2x2x2 integration: it has no zero-energy modes, so no hourglass stiffness to choose,
+// whose value would show in every convergence table. They lock as Poisson's ratio goes to 1/2; with the
+// element's mean dilatation in place of that of each integration point they do not. Those of a box are alike:
+// shape gradients are computed once, and a linear box keeps one 24x24 stiffness.
 //
 // With mean dilatation a hexahedron has the mean of its element, a tetrahedron the means at its nodes: the
 // volume of the elements around a node, over the undeformed one, replaces that of the element,
@@ -33,6 +38,9 @@ using Tetrahedron = SolidElement<4, 1>;
 Hexahedron hexahedron_of(const std::array<int, 8>& nodes, const Dofs& position);
 Tetrahedron tetrahedron_of(const std::array<int, 4>& nodes, const Dofs& position);
 
+template <int N, int P>
+class DeformedElement;
+
 class MeshBody {
  public:
   // position: of the whole model, where the body's nodes begin at first. Throws MeshError.
@@ -42,16 +50,19 @@ class MeshBody {
   bool is_linear() const { return material_.law == MaterialLaw::linear; }
   // Adds the lumped mass of the elements.
   void add_mass(Dofs& mass) const;
-  // Threads give the bits of one: elements write forces of their own, which nodes sum in a fixed order.
+  // Threads give the bits of one: in a box every second layer of elements at a time, each layer by one
+  // thread; else elements write forces of their own, which nodes sum in a fixed order.
   void add_internal_forces(const Dofs& u, Dofs& force) const;
-  double potential(const Dofs& u) const;
+  void add_potential(const Dofs& u, double& sum) const;
   // Cauchy's stress of each element, appended.
   void add_stresses(const Dofs& u, std::vector<Eigen::Matrix3d>& of_hexahedra,
                     std::vector<Eigen::Matrix3d>& of_tetrahedra) const;
   // From the largest eigenvalue of each element, which bounds that of the whole (Irons and Treharne 1971).
+  // Mean dilatation makes it no smaller: it lowers the energy of every motion (Jensen).
   double critical_step() const;
 
-  const std::vector<Hexahedron>& hexahedra() const { return hexahedra_; }
+  // Their nodes in the model.
+  const std::vector<std::array<int, 8>>& hexahedra() const { return hexahedra_; }
   const std::vector<Tetrahedron>& tetrahedra() const { return tetrahedra_; }
 
  private:
@@ -59,6 +70,14 @@ class MeshBody {
   struct NodalDilatation {
     double dilatation = 0.0, pressure = 0.0;
   };
+  using CornerForces = Eigen::Matrix<double, 3, 8>;
+  bool is_box() const { return layer_ > 0; }
+  bool keeps_stiffness() const { return is_box() && is_linear(); }
+  const Hexahedron& shape(std::size_t hexahedron) const { return shapes_[is_box() ? 0 : hexahedron]; }
+  DeformedElement<8, 8> deformed_hexahedron(std::size_t number, const Dofs& u) const;
+  CornerForces hexahedron_force(std::size_t number, const Dofs& u) const;
+  double hexahedron_energy(std::size_t number, const Dofs& u) const;
+  void add_box_forces(const Dofs& u, Dofs& force) const;
   bool averages_at_nodes() const { return element_ == Element::mean_dilatation && !tetrahedra_.empty(); }
   template <class Visit>
   void for_each_corner(int node, Visit visit) const;
@@ -66,12 +85,16 @@ class MeshBody {
   double mean_distortion(int node) const;
   Eigen::Matrix3d nodal_stress(std::size_t tetrahedron) const;
   double nodal_energy(const Dofs& u) const;
-  void index_corners(int node_count);
+  void index_corners();
 
   int first_;
   Material material_;
   Element element_;
-  std::vector<Hexahedron> hexahedra_;
+  std::size_t layer_;  // elements of a layer of a box; 0: no box
+  int node_count_;
+  std::vector<std::array<int, 8>> hexahedra_;
+  std::vector<Hexahedron> shapes_;           // of each hexahedron; in a box one for all
+  Eigen::Matrix<double, 24, 24> stiffness_;  // of a hexahedron of a box
   std::vector<Tetrahedron> tetrahedra_;
   // Columns of corner_forces_ by node: those of hexahedra, then those of tetrahedra.
   std::vector<std::size_t> first_corner_, corners_;

@@ -16,6 +16,10 @@ namespace ilaw::host {
 struct MeshTopology {
   std::vector<std::array<int, 8>> hexahedra;
   std::vector<std::array<int, 4>> tetrahedra;
+  // Of a box: the size of its hexahedra, which are all alike, and how many of them lie in a layer; two layers
+  // share no node unless they are neighbours.
+  Eigen::Vector3d element_size = Eigen::Vector3d::Zero();
+  std::size_t layer = 0;
   // By name: "" (all nodes), "boundary", the sides of the bounding box ("x_min", ...) where facets lie in
   // them, and the groups of the file. A facet with three nodes has the last one twice.
   std::map<std::string, NodeSet> sets;

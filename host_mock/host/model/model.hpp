@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include "base/vector.hpp"
 
 #include <array>
 #include <limits>
@@ -57,6 +57,9 @@ class Model {
   int node_count() const { return static_cast<int>(nodes_.mass.size()) / nodes_.dimension; }
   const Dofs& mass() const { return nodes_.mass; }
   const Dofs& position() const { return nodes_.position; }
+  // Of a node, undeformed and displaced.
+  Vector position(int node) const { return of_node(position(), node); }
+  Vector position(int node, const Dofs& u) const { return of_node(position(), node) + of_node(u, node); }
   const Dofs& initial_velocity() const { return nodes_.velocity; }
   const Dofs& initial_displacement() const { return nodes_.displacement; }
   // Named sets; "all" is always there.
@@ -91,6 +94,10 @@ class Model {
   Mesh mesh_;
 
  private:
+  Vector of_node(const Dofs& dofs, int node) const {
+    return dofs.segment(Eigen::Index{node} * dimension(), dimension());
+  }
+
   std::shared_ptr<const ThermalModel> thermal_;
 };
 

@@ -7,18 +7,6 @@
 #include <cmath>
 
 namespace ilaw::host {
-namespace {
-
-// Distance to a centre or an axis, less the radius; a point that is on it is pushed out along any
-// direction.
-RigidSurface round_surface(const Vector& from_center, double radius, const Vector& any_direction) {
-  const double distance = from_center.norm();
-  if (distance == 0.0) return {-radius, any_direction};
-  return {distance - radius, from_center / distance};
-}
-
-}  // namespace
-
 Vector across(const Vector& axis) {
   Eigen::Index least = 0;
   axis.cwiseAbs().minCoeff(&least);
@@ -81,23 +69,19 @@ RigidSurface Plane::shape_at(const Vector& x, double time) const {
   return {(x - point_).dot(normal), normal};
 }
 
-Sphere::Sphere(Vector center, double radius, Motion motion, std::optional<Turning> turning)
-    : Obstacle(std::move(motion), std::move(turning)), center_(std::move(center)), radius_(radius) {}
-
-RigidSurface Sphere::shape_at(const Vector& x, double /*time*/) const {
-  return round_surface(x - center_, radius_, Vector::Unit(x.size(), 0));
+Round::Round(Vector center, const std::optional<Vector>& axis, double radius, Motion motion,
+             std::optional<Turning> turning)
+    : Obstacle(std::move(motion), std::move(turning)), center_(std::move(center)), radius_(radius) {
+  if (axis) axis_ = axis->normalized();
 }
 
-Cylinder::Cylinder(Vector point, const Vector& axis, double radius, Motion motion,
-                   std::optional<Turning> turning)
-    : Obstacle(std::move(motion), std::move(turning)),
-      point_(std::move(point)),
-      axis_(axis.normalized()),
-      radius_(radius) {}
-
-RigidSurface Cylinder::shape_at(const Vector& x, double /*time*/) const {
-  const Vector offset = x - point_;
-  return round_surface(offset - offset.dot(axis_) * axis_, radius_, across(axis_));
+// A point in the middle is pushed out along any direction.
+RigidSurface Round::shape_at(const Vector& x, double /*time*/) const {
+  Vector offset = x - center_;
+  if (axis_) offset -= offset.dot(*axis_) * *axis_;
+  const double distance = offset.norm();
+  if (distance == 0.0) return {-radius_, axis_ ? across(*axis_) : Vector(Vector::Unit(x.size(), 0))};
+  return {distance - radius_, offset / distance};
 }
 
 }  // namespace ilaw::host

@@ -36,6 +36,10 @@ class Motion {
 struct TurningRate {
   double along = 0.0, inward = 0.0;
 };
+// In the steps before and after a time.
+struct TurningRates {
+  TurningRate before, after;
+};
 // Velocities of a place at rate 1: around the axis, and that once more, which points at the axis.
 struct SurfaceTurn {
   Vector along, inward;
@@ -96,8 +100,9 @@ class Obstacle {
   Vector velocity(double from, double to) const { return motion_.velocity(from, to); }
   // Whether its surface moves along itself, beside that, and how fast; mean, between two times.
   bool turns() const { return turning_.has_value(); }
-  TurningRate rate_before(double since, double time) const { return rate(since, time, -1.0); }
-  TurningRate rate_after(double time, double until) const { return rate(time, until, 1.0); }
+  TurningRates rates(double since, double time, double until) const {
+    return {rate(since, time, -1.0), rate(time, until, 1.0)};
+  }
   bool stands_still() const { return !turns() && motion_.stands_still(); }
   // Whether its normal turns, too. Then how fast it nears a place at most, between two times.
   virtual bool tilts() const { return false; }
@@ -147,28 +152,17 @@ class Plane : public Obstacle {
   bool tilts_;
 };
 
-// A sphere in 3D, a disc in 2D.
-class Sphere : public Obstacle {
+// A sphere, which is a disc in 2D; with an axis an infinite cylinder, which turns about it.
+class Round : public Obstacle {
  public:
-  Sphere(Vector center, double radius, Motion motion, std::optional<Turning> turning = {});
+  Round(Vector center, const std::optional<Vector>& axis, double radius, Motion motion,
+        std::optional<Turning> turning = {});
 
  private:
   RigidSurface shape_at(const Vector& x, double time) const override;
   const Vector& pivot() const override { return center_; }
   Vector center_;
-  double radius_;
-};
-
-// An infinite cylinder (3D). Turns about its axis.
-class Cylinder : public Obstacle {
- public:
-  Cylinder(Vector point, const Vector& axis, double radius, Motion motion,
-           std::optional<Turning> turning = {});
-
- private:
-  RigidSurface shape_at(const Vector& x, double time) const override;
-  const Vector& pivot() const override { return point_; }
-  Vector point_, axis_;
+  std::optional<Vector> axis_;
   double radius_;
 };
 

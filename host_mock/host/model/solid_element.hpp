@@ -13,12 +13,12 @@ namespace ilaw::host {
 
 // Displacements relative to the first corner: rounding then grows with strain, not with the distance
 // travelled.
-template <int N, int P>
-Eigen::Matrix<double, 3, N> gather(const SolidElement<N, P>& element, const Dofs& u) {
+template <std::size_t N>
+Eigen::Matrix<double, 3, N> gather(const std::array<int, N>& nodes, const Dofs& u) {
   Eigen::Matrix<double, 3, N> local;
-  const Eigen::Vector3d origin = u.segment<3>(3 * Eigen::Index{element.nodes[0]});
+  const Eigen::Vector3d origin = u.segment<3>(3 * Eigen::Index{nodes[0]});
   for (std::size_t a = 0; a < N; ++a)
-    local.col(static_cast<Eigen::Index>(a)) = u.segment<3>(3 * Eigen::Index{element.nodes[a]}) - origin;
+    local.col(static_cast<Eigen::Index>(a)) = u.segment<3>(3 * Eigen::Index{nodes[a]}) - origin;
   return local;
 }
 
@@ -64,9 +64,9 @@ class DeformedElement {
       if (is_linear_)
         sum += part(g) * stress(g, pressure);
       else
-        sum += part(g) / mean_ * stress(g, pressure) * gradient_[g].transpose();
+        sum += part(g) * stress(g, pressure) * gradient_[g].transpose();
     }
-    return sum;
+    return is_linear_ ? sum : Eigen::Matrix3d(sum / mean_);
   }
 
  private:

@@ -2,7 +2,6 @@
 #include "model/solids.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace ilaw::host {
 namespace {
@@ -15,7 +14,7 @@ NodeSet moved(NodeSet set, int first) {
   return set;
 }
 
-void add_mesh(const MeshSetup& setup, int first, Nodes& nodes) {
+void add_nodes(const MeshSetup& setup, int first, Nodes& nodes) {
   for (std::size_t k = 0; k < setup.mesh.nodes.size(); ++k) {
     const Eigen::Index dof = 3 * (Eigen::Index{first} + static_cast<Eigen::Index>(k));
     nodes.position.segment<3>(dof) = setup.mesh.nodes[k] + setup.offset;
@@ -29,24 +28,14 @@ void add_mesh(const MeshSetup& setup, int first, Nodes& nodes) {
   all.areas.insert(all.areas.end(), whole.areas.begin(), whole.areas.end());
 }
 
-// The masses of the meshes are added by their elements.
-Nodes nodes_of(const std::vector<BlockSetup>& blocks, const std::vector<MeshSetup>& meshes) {
-  Nodes nodes{3, {}, {}, {}, {}};
+// The masses are added by the elements.
+Nodes nodes_of(const std::vector<MeshSetup>& setups) {
   Eigen::Index size = 0;
-  if (!blocks.empty()) {
-    const Blocks boxes(blocks);
-    nodes = {3, boxes.mass(), boxes.position(), boxes.initial_velocity(), boxes.sets()};
-    size = boxes.mass().size();
-  }
-  Eigen::Index all = size;
-  for (const MeshSetup& setup : meshes) all += 3 * static_cast<Eigen::Index>(setup.mesh.nodes.size());
-  for (Dofs* dofs : {&nodes.mass, &nodes.position, &nodes.velocity}) {
-    dofs->conservativeResize(all);
-    dofs->tail(all - size).setZero();
-  }
-  int first = static_cast<int>(size / 3);
-  for (const MeshSetup& setup : meshes) {
-    add_mesh(setup, first, nodes);
+  for (const MeshSetup& setup : setups) size += 3 * static_cast<Eigen::Index>(setup.mesh.nodes.size());
+  Nodes nodes{3, Dofs::Zero(size), Dofs(size), Dofs(size), {}};
+  int first = 0;
+  for (const MeshSetup& setup : setups) {
+    add_nodes(setup, first, nodes);
     first += static_cast<int>(setup.mesh.nodes.size());
   }
   return nodes;
@@ -54,55 +43,38 @@ Nodes nodes_of(const std::vector<BlockSetup>& blocks, const std::vector<MeshSetu
 
 }  // namespace
 
-Solids::Solids(const std::vector<BlockSetup>& blocks, const std::vector<MeshSetup>& meshes)
-    : Model(nodes_of(blocks, meshes)), critical_step_(std::numeric_limits<double>::infinity()) {
+Solids::Solids(const std::vector<MeshSetup>& bodies) : Model(nodes_of(bodies)) {
   mesh_.nodes_per_cell = 8;
   int first = 0;
-  if (!blocks.empty()) {
-    blocks_.emplace(blocks);
-    mesh_.cells = blocks_->mesh().cells;
-    first = blocks_->node_count();
-    critical_step_ = blocks_->critical_step();
-  }
-  for (const MeshSetup& setup : meshes) {
+  for (const MeshSetup& setup : bodies) {
     const MeshBody& body =
         bodies_.emplace_back(setup.topology, nodes_.position, first, setup.material, setup.element);
     body.add_mass(nodes_.mass);
     steps_.push_back(body.critical_step());
-    critical_step_ = std::min(critical_step_, steps_.back());
-    first += static_cast<int>(setup.mesh.nodes.size());
-  }
-  add_cells();
-}
-
-void Solids::add_cells() {
-  for (const MeshBody& body : bodies_) {
-    for (const Hexahedron& element : body.hexahedra())
-      mesh_.cells.insert(mesh_.cells.end(), element.nodes.begin(), element.nodes.end());
+    for (const std::array<int, 8>& nodes : body.hexahedra())
+      mesh_.cells.insert(mesh_.cells.end(), nodes.begin(), nodes.end());
     for (const Tetrahedron& element : body.tetrahedra())
       mesh_.tetrahedra.insert(mesh_.tetrahedra.end(), element.nodes.begin(), element.nodes.end());
+    first += static_cast<int>(setup.mesh.nodes.size());
   }
 }
 
 bool Solids::is_linear() const {
-  return (!blocks_ || blocks_->is_linear()) &&
-         std::all_of(bodies_.begin(), bodies_.end(), [](const MeshBody& body) { return body.is_linear(); });
+  return std::all_of(bodies_.begin(), bodies_.end(), [](const MeshBody& body) { return body.is_linear(); });
 }
 
 void Solids::add_internal_forces(const Dofs& u, Dofs& force) const {
-  if (blocks_) blocks_->add_internal_forces(u, force);
   for (const MeshBody& body : bodies_) body.add_internal_forces(u, force);
 }
 
 double Solids::potential(const Dofs& u) const {
-  double sum = blocks_ ? blocks_->potential(u) : 0.0;
-  for (const MeshBody& body : bodies_) sum += body.potential(u);
+  double sum = 0.0;
+  for (const MeshBody& body : bodies_) body.add_potential(u, sum);
   return sum;
 }
 
 std::vector<Eigen::Matrix3d> Solids::stresses(const Dofs& u) const {
-  std::vector<Eigen::Matrix3d> stresses = blocks_ ? blocks_->stresses(u) : std::vector<Eigen::Matrix3d>();
-  std::vector<Eigen::Matrix3d> of_tetrahedra;
+  std::vector<Eigen::Matrix3d> stresses, of_tetrahedra;
   for (const MeshBody& body : bodies_) body.add_stresses(u, stresses, of_tetrahedra);
   stresses.insert(stresses.end(), of_tetrahedra.begin(), of_tetrahedra.end());
   return stresses;

@@ -15,14 +15,10 @@ struct Line {
 };
 
 Line line_of(const Model& model, const Spring& spring, const Dofs& u) {
-  const Eigen::Index d = model.dimension();
-  const auto position = [&](int node) -> Vector {
-    return model.position().segment(node * d, d) + u.segment(node * d, d);
-  };
-  const Vector apart =
-      (spring.partner < 0 ? spring.anchor : position(spring.partner)) - position(spring.node);
+  const Vector apart = (spring.partner < 0 ? spring.anchor : model.position(spring.partner, u)) -
+                       model.position(spring.node, u);
   const double length = apart.norm();
-  return {length, length > 0.0 ? Vector(apart / length) : Vector::Zero(d)};
+  return {length, length > 0.0 ? Vector(apart / length) : Vector::Zero(apart.size())};
 }
 
 double stretch_rate(const Model& model, const Spring& spring, const Vector& direction, const Dofs& v) {

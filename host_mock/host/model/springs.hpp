@@ -1,6 +1,7 @@
 // springs.hpp - springs and dampers between nodes, or between a node and a fixed point, beside the
 // model's own internal forces. A spring of rest length L pulls with k (l - L) along the line between
-// its ends, however far they move and turn.
+// its ends, however far they move and turn. The force on a point at an anchor is central, so that central
+// difference keeps the angular momentum x_n x m v_{n+1/2} about it to rounding.
 //
 // A damper resists with c dl/dt, at the velocity before the step: it counts in the critical step.
 // SPDX-License-Identifier: BSD-3-Clause
@@ -35,7 +36,10 @@ class Sprung : public Model {
   double potential(const Dofs& u) const override;
   std::vector<Eigen::Matrix3d> stresses(const Dofs& u) const override { return body_->stresses(u); }
   double critical_step() const override { return critical_step_; }
-  bool critical_step_is_exact() const override { return false; }
+  // One spring from a point to its anchor has the bound as its eigenvalue.
+  bool critical_step_is_exact() const override {
+    return springs_.size() == 1 && springs_[0].partner < 0 && !body_->has_internal_forces();
+  }
 
  private:
   std::unique_ptr<const Model> body_;

@@ -65,21 +65,6 @@ json cause_of(json scene) {
   return scene;
 }
 
-// The pointer of the first value that is not the same in both.
-std::string first_difference(const json& a, const json& b, const std::string& pointer) {
-  if (a.is_object() && b.is_object()) {
-    for (const auto& [key, value] : a.items())
-      if (!b.contains(key) || value != b[key])
-        return b.contains(key) ? first_difference(value, b[key], pointer + "/" + key) : pointer + "/" + key;
-    for (const auto& [key, ignored] : b.items())
-      if (!a.contains(key)) return pointer + "/" + key;
-  }
-  if (a.is_array() && b.is_array() && a.size() == b.size())
-    for (std::size_t k = 0; k < a.size(); ++k)
-      if (a[k] != b[k]) return first_difference(a[k], b[k], pointer + "/" + std::to_string(k));
-  return pointer;
-}
-
 // Where two values are not the same, and what is there now.
 std::string differences(const json& was, const json& is) {
   std::string all;
@@ -99,7 +84,7 @@ void check_identity(const json& found, const json& expected) {
                                "), expected the very run that is to be resumed");
   const json was = cause_of(found.at("scene")), is = cause_of(expected.at("scene"));
   if (was != is)
-    throw std::runtime_error("is of another scene: " + first_difference(was, is, "") +
+    throw std::runtime_error("is of another scene: " + json::diff(was, is)[0]["path"].get<std::string>() +
                              " differs, expected no difference but in 'title', 'doc', 'output' and the 'end' "
                              "of 'time'");
 }

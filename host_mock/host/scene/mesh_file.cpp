@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/mesh_file.hpp"
+#include "scene/read_meshes.hpp"
 
 #include "base/bytes.hpp"
 #include "base/child_process.hpp"

@@ -4,7 +4,6 @@
 #include "contact/counterpart.hpp"
 #include "contact/mesh_surface.hpp"
 #include "scene/json_text.hpp"
-#include "scene/selection.hpp"
 #include "scene/values.hpp"
 
 #include <algorithm>
@@ -74,12 +73,12 @@ std::unique_ptr<const Obstacle> read_obstacle(const json& obstacle, int d, const
     return std::make_unique<Plane>(read_vector(obstacle["point"], d, pointer + "/point"),
                                    read_direction(obstacle["normal"], d, pointer + "/normal"), motion,
                                    turning);
-  if (type == "sphere")
-    return std::make_unique<Sphere>(read_vector(obstacle["center"], d, pointer + "/center"),
-                                    obstacle["radius"].get<double>(), motion, turning);
-  return std::make_unique<Cylinder>(read_vector(obstacle["point"], d, pointer + "/point"),
-                                    read_direction(obstacle["axis"], d, pointer + "/axis"),
-                                    obstacle["radius"].get<double>(), motion, turning);
+  const bool is_sphere = type == "sphere";
+  const std::string center = is_sphere ? "center" : "point";
+  std::optional<Vector> axis;
+  if (!is_sphere) axis = read_direction(obstacle["axis"], d, pointer + "/axis");
+  return std::make_unique<Round>(read_vector(obstacle[center], d, pointer + "/" + center), axis,
+                                 obstacle["radius"].get<double>(), motion, turning);
 }
 
 std::unique_ptr<Counterpart> read_partners(const json& against, const NodeSet& own, const Model& model,

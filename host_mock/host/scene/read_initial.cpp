@@ -3,7 +3,6 @@
 
 #include "model/elements.hpp"
 #include "scene/json_text.hpp"
-#include "scene/selection.hpp"
 #include "scene/values.hpp"
 
 #include <string>

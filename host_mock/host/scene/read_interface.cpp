@@ -5,7 +5,6 @@
 #include "scene/arguments.hpp"
 #include "scene/json_text.hpp"
 #include "scene/scene.hpp"
-#include "scene/selection.hpp"
 #include "scene/values.hpp"
 
 #include <algorithm>
@@ -163,7 +162,7 @@ std::unique_ptr<Interface> read_interface(std::size_t number, const Scene& scene
     InterfaceSetup setup = read_setup(interface, number, scene, own, pointer);
     setup.has_driven_nodes = find_driven(setup, scene, pointer + "/nodes");
     auto made = std::make_unique<Interface>(std::move(setup), *scene.model);
-    check_obstacle_temperature(*made, pointer);
+    check_temperatures_read(*made, scene, pointer);
     return made;
   } catch (const ParameterError& error) {
     const std::string whose =

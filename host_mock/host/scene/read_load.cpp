@@ -4,7 +4,6 @@
 #include "model/load.hpp"
 #include "model/pressure.hpp"
 #include "scene/json_text.hpp"
-#include "scene/selection.hpp"
 #include "scene/values.hpp"
 
 #include <numeric>
@@ -22,6 +21,12 @@ std::vector<double> shares_of(const NodeSet& set, const std::string& pointer) {
   std::vector<double> shares = set.areas;
   for (double& share : shares) share /= sum;
   return shares;
+}
+
+std::vector<double> masses_of(const std::vector<int>& nodes, const Model& model) {
+  std::vector<double> masses;
+  for (const int node : nodes) masses.push_back(model.mass()[Eigen::Index{node} * model.dimension()]);
+  return masses;
 }
 
 // A factor over time; 1 where none is given.
@@ -77,9 +82,9 @@ std::unique_ptr<Load> read_load(const json& load, const Model& model, const std:
   const NodeSet set = select_nodes(load.value("nodes", json("all")), model, pointer + "/nodes");
   if (type == "temperature" || type == "heat_flux") return read_heat_load(load, model, set, pointer);
   if (type == "gravity")
-    return std::make_unique<Gravity>(model, set.nodes,
-                                     read_vector(load["acceleration"], d, pointer + "/acceleration"),
-                                     read_factor(load, pointer));
+    return std::make_unique<Force>(set.nodes, masses_of(set.nodes, model),
+                                   read_vector(load["acceleration"], d, pointer + "/acceleration"),
+                                   read_factor(load, pointer));
   if (type == "force") {
     const std::vector<double> shares = load.value("total", false)
                                            ? shares_of(set, pointer + "/nodes")

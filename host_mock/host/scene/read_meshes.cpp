@@ -4,7 +4,6 @@
 #include "base/files.hpp"
 #include "base/words.hpp"
 #include "scene/json_text.hpp"
-#include "scene/mesh_file.hpp"
 #include "scene/values.hpp"
 
 #include <array>
@@ -55,22 +54,17 @@ MeshSetup read_mesh(const json& mesh, const std::string& pointer, const std::fil
   return setup;
 }
 
-json describe_meshes(const json& meshes, const std::vector<MeshSetup>& setups, const Solids& solids) {
-  json described = json::array();
-  for (std::size_t k = 0; k < setups.size(); ++k) {
-    const MeshTopology& topology = setups[k].topology;
-    described.push_back(
-        {{"name", setups[k].name},
-         {"file", meshes[k]["file"]},
-         {"nodes", setups[k].mesh.nodes.size()},
-         {"hexahedra", topology.hexahedra.size()},
-         {"tetrahedra", topology.tetrahedra.size()},
-         {"parts", topology.parts},
-         {"critical_step", solids.critical_step_of_mesh(k)},
-         {"worst_element", {{"cell", topology.worst_cell}, {"scaled_jacobian", topology.worst_quality}}},
-         {"sets", describe_sets(topology)}});
-  }
-  return described;
+json describe_mesh(const json& mesh, const MeshSetup& setup, double critical_step) {
+  const MeshTopology& topology = setup.topology;
+  return {{"name", setup.name},
+          {"file", mesh["file"]},
+          {"nodes", setup.mesh.nodes.size()},
+          {"hexahedra", topology.hexahedra.size()},
+          {"tetrahedra", topology.tetrahedra.size()},
+          {"parts", topology.parts},
+          {"critical_step", critical_step},
+          {"worst_element", {{"cell", topology.worst_cell}, {"scaled_jacobian", topology.worst_quality}}},
+          {"sets", describe_sets(topology)}};
 }
 
 std::string line_of_mesh(const json& mesh) {

@@ -16,12 +16,16 @@ namespace ilaw::host {
 MeshSetup read_mesh(const nlohmann::json& mesh, const std::string& pointer,
                     const std::filesystem::path& scene_file);
 
-// Counts, quality, critical step and sets of each mesh, for the summary; and a line of it for a terminal.
-nlohmann::json describe_meshes(const nlohmann::json& meshes, const std::vector<MeshSetup>& setups,
-                               const Solids& solids);
+// Counts, quality, critical step and sets of a mesh, for the summary; and a line of it for a terminal.
+nlohmann::json describe_mesh(const nlohmann::json& mesh, const MeshSetup& setup, double critical_step);
 std::string line_of_mesh(const nlohmann::json& described);
 
 // Sizes and checksums of the files, by which a checkpoint knows its meshes.
 nlohmann::json marks_of_meshes(const nlohmann::json& model, const std::filesystem::path& scene_file);
+
+// Reads a .vtu or a legacy .vtk file and checks it: all indices are in range, all cells have a type that
+// MeshData knows. VTK's readers crash on some damaged files, so they run in a process of their own. Throws
+// MeshError.
+MeshData read_mesh_file(const std::filesystem::path& file);
 
 }  // namespace ilaw::host

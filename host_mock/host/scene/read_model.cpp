@@ -3,10 +3,10 @@
 
 #include "base/words.hpp"
 #include "model/bars.hpp"
-#include "model/blocks.hpp"
+#include "model/box.hpp"
 #include "model/model.hpp"
 #include "model/points.hpp"
-#include "model/rotating_spring.hpp"
+#include "model/springs.hpp"
 #include "scene/json_text.hpp"
 #include "scene/packed_points.hpp"
 #include "scene/read_meshes.hpp"
@@ -47,11 +47,14 @@ std::unique_ptr<Model> read_points(const json& model) {
   return std::make_unique<Points>(d, points);
 }
 
+// A point on a spring to the origin.
 std::unique_ptr<Model> read_rotating_spring(const json& model) {
-  return std::make_unique<RotatingSpring>(SpringSetup{
-      model["mass"].get<double>(), model["stiffness"].get<double>(), model["length"].get<double>(),
-      model.value("area", 1.0), read_vector(model["position"], 2, "/model/position"),
-      read_vector_or_zero(model, "velocity", 2, "/model")});
+  const PointMass point{model["mass"].get<double>(), model.value("area", 1.0),
+                        read_vector(model["position"], 2, "/model/position"),
+                        read_vector_or_zero(model, "velocity", 2, "/model"), Vector()};
+  const Spring spring{
+      0, -1, Vector::Zero(2), model["stiffness"].get<double>(), 0.0, model["length"].get<double>()};
+  return std::make_unique<Sprung>(std::make_unique<Points>(2, std::vector{point}), std::vector{spring});
 }
 
 // Bodies are named in a scene, or bar0, bar1 ...
@@ -142,8 +145,8 @@ Element read_element(const json& body) {
   return body.value("element", "full") == "full" ? Element::full : Element::mean_dilatation;
 }
 
-std::vector<BlockSetup> read_boxes(const json& given, BodyNames& names) {
-  std::vector<BlockSetup> blocks;
+std::vector<MeshSetup> read_boxes(const json& given, BodyNames& names) {
+  std::vector<BoxSetup> setups;
   double nodes = 0.0;
   for (std::size_t k = 0; k < given.size(); ++k) {
     const json& block = given[k];
@@ -151,37 +154,36 @@ std::vector<BlockSetup> read_boxes(const json& given, BodyNames& names) {
     const auto elements = block["elements"].get<std::array<int, 3>>();
     nodes += (elements[0] + 1.0) * (elements[1] + 1.0) * (elements[2] + 1.0);
     check_nodes(nodes, block, pointer);
-    blocks.push_back({names.next(block, pointer), read_vector_or_zero(block, "corner", 3, pointer),
+    setups.push_back({names.next(block, pointer), read_vector_or_zero(block, "corner", 3, pointer),
                       read_vector(block["size"], 3, pointer + "/size"),
                       read_vector_or_zero(block, "velocity", 3, pointer), elements,
                       read_material(block["material"]), read_element(block)});
   }
   check_memory(nodes, 3, "/model/blocks");
-  return blocks;
+  std::vector<MeshSetup> boxes;
+  std::transform(setups.begin(), setups.end(), std::back_inserter(boxes), box_of);
+  return boxes;
 }
 
-std::unique_ptr<Model> read_blocks(const json& model) {
-  BodyNames names("block");
-  return std::make_unique<Blocks>(read_boxes(model["blocks"], names));
-}
-
+// Blocks first, then meshes.
 std::unique_ptr<Model> read_solids(const json& model, const std::filesystem::path& scene_file,
                                    json& described) {
   BodyNames names("block");
-  const std::vector<BlockSetup> blocks = read_boxes(model.value("blocks", json::array()), names);
+  std::vector<MeshSetup> bodies = read_boxes(model.value("blocks", json::array()), names);
+  const std::size_t first_mesh = bodies.size();
   names.name_kind("mesh");
-  std::vector<MeshSetup> meshes;
-  for (std::size_t k = 0; k < model["meshes"].size(); ++k) {
-    const json& mesh = model["meshes"][k];
-    const std::string pointer = at("/model/meshes", k);
-    const std::string name = names.next(mesh, pointer);
-    MeshSetup& setup = meshes.emplace_back(read_mesh(mesh, pointer, scene_file));
+  const json meshes = model.value("meshes", json::array());
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    const std::string pointer = at("/model/meshes", k), name = names.next(meshes[k], pointer);
+    MeshSetup& setup = bodies.emplace_back(read_mesh(meshes[k], pointer, scene_file));
     setup.name = name;
-    setup.material = read_material(mesh["material"]);
-    setup.element = read_element(mesh);
+    setup.material = read_material(meshes[k]["material"]);
+    setup.element = read_element(meshes[k]);
   }
-  auto solids = std::make_unique<Solids>(blocks, meshes);
-  described = describe_meshes(model["meshes"], meshes, *solids);
+  auto solids = std::make_unique<Solids>(bodies);
+  for (std::size_t k = 0; k < meshes.size(); ++k)
+    described.push_back(
+        describe_mesh(meshes[k], bodies[first_mesh + k], solids->critical_step_of(first_mesh + k)));
   return solids;
 }
 
@@ -191,8 +193,7 @@ std::unique_ptr<Model> read_model(const json& model, const std::filesystem::path
   const std::string type = model["type"].get<std::string>();
   if (type == "points") return read_points(model);
   if (type == "rotating_spring") return read_rotating_spring(model);
-  if (type == "solids") return read_solids(model, scene_file, meshes);
-  return type == "bars" ? read_bars(model) : read_blocks(model);
+  return type == "bars" ? read_bars(model) : read_solids(model, scene_file, meshes);
 }
 
 }  // namespace ilaw::host

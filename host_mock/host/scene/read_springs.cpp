@@ -3,7 +3,6 @@
 
 #include "model/springs.hpp"
 #include "scene/json_text.hpp"
-#include "scene/selection.hpp"
 #include "scene/values.hpp"
 
 #include <cstddef>
@@ -32,9 +31,8 @@ std::vector<int> read_other_ends(const json& spring, const std::vector<int>& nod
 // Without load, where the scene does not say: the distance of the ends before any displacement.
 double read_length(const json& spring, const Spring& ends, const Model& model) {
   if (spring.contains("length")) return spring["length"].get<double>();
-  const Eigen::Index d = model.dimension();
-  const auto position = [&](int node) -> Vector { return model.position().segment(node * d, d); };
-  return ((ends.partner < 0 ? ends.anchor : position(ends.partner)) - position(ends.node)).norm();
+  const Vector end = ends.partner < 0 ? ends.anchor : model.position(ends.partner);
+  return (end - model.position(ends.node)).norm();
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/readers.hpp"
 
+#include "model/load.hpp"
 #include "model/thermal_model.hpp"
 #include "scene/json_text.hpp"
 #include "scene/packed_points.hpp"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -27,14 +29,10 @@ bool has_temperature(int node, const Model& model) {
   return model.thermal() && model.thermal()->has_temperature(node);
 }
 
-// Two temperatures of one node would be one too many: the law would see the one, and heat flow into the
-// other.
-void refuse_given(const char* field, const Scene& scene, const InterfaceSetup& setup,
-                  const std::string& pointer) {
-  const bool is_parameter = setup.arguments.gives(field);
-  if (!is_parameter && !scene.source.value("fields", json::object()).contains(field)) return;
-  throw mistake(is_parameter ? pointer + "/parameters/" + field : std::string("/fields/") + field, "a value",
-                "none: the nodes of '" + setup.name + "' have temperatures of their own");
+// With two temperatures of one node the law would see the one, and heat flow into the other.
+[[noreturn]] void refuse_second_value(const std::string& pointer, const std::string& interface) {
+  throw mistake(pointer, "a value",
+                "none: the nodes of '" + interface + "' have temperatures of their own, which its law reads");
 }
 
 // Values per node until a step overwrites them: the law is created with them.
@@ -104,18 +102,40 @@ void read_contact_heat(const json& interface, const Scene& scene, const std::str
   require_temperatures(partners, model, pointer + "/against");
   setup.heat = HeatSetup{std::move(obstacle)};
   for (const char* field : ContactHeat::field_names) {
-    refuse_given(field, scene, setup, pointer);
+    if (setup.arguments.gives(field)) refuse_second_value(pointer + "/parameters/" + field, setup.name);
     setup.arguments.fields[field] = first_values(field, setup, model);
   }
 }
 
-void check_obstacle_temperature(const Interface& interface, const std::string& pointer) {
+void check_temperatures_read(const Interface& interface, const Scene& scene, const std::string& pointer) {
   const InterfaceSetup& setup = interface.setup();
-  if (!setup.heat || setup.heat->obstacle_temperature || !setup.counterpart->partners().empty()) return;
-  for (std::uint32_t p = 0; p < interface.info().per_node_parameter_count; ++p)
-    if (std::string_view(interface.info().per_node_parameters[p]) == "counterpart_temperature")
-      throw SceneError(pointer + "/obstacle",
-                       "key 'temperature' is missing, which law '" + setup.law + "' reads");
+  if (!setup.heat) return;
+  const json fields = scene.source.value("fields", json::object());
+  for (const char* field : ContactHeat::field_names)
+    if (fields.contains(field) && interface.heat()->reads(field))
+      refuse_second_value(std::string("/fields/") + field, setup.name);
+  const bool is_missing = !setup.heat->obstacle_temperature && setup.counterpart->partners().empty();
+  if (is_missing && interface.heat()->reads("counterpart_temperature"))
+    throw SceneError(pointer + "/obstacle",
+                     "key 'temperature' is missing, which law '" + setup.law + "' reads");
+}
+
+void check_held_temperatures(const Scene& scene) {
+  const json loads = scene.source.value("loads", json::array());
+  std::map<int, std::size_t> first_load;
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const HeatLoad* const heat = scene.loads[i]->heat();
+    if (!heat || !heat->holds()) continue;
+    for (const int node : heat->set().nodes) {
+      const std::size_t first = first_load.emplace(node, i).first->second;
+      const json &own = loads[i]["history"], &other = loads[first]["history"];
+      if (own != other)
+        throw mistake(at("/loads", i),
+                      "node " + std::to_string(node) + " held at " + own.dump() + ", which " +
+                          at("/loads", first) + " holds at " + other.dump(),
+                      "one 'history' for each node");
+    }
+  }
 }
 
 }  // namespace ilaw::host

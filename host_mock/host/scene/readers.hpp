@@ -60,8 +60,11 @@ void require_temperatures(const std::vector<int>& nodes, const Model& model, con
 // The temperatures that an interface hands to its law, where its nodes have any.
 void read_contact_heat(const nlohmann::json& interface, const Scene& scene, const std::string& pointer,
                        InterfaceSetup& setup);
-// Throws where the law reads the temperature of an obstacle that has none.
-void check_obstacle_temperature(const Interface& interface, const std::string& pointer);
+// Throws where the law reads the temperature of an obstacle that has none, or one of "/fields" beside that of
+// a body.
+void check_temperatures_read(const Interface& interface, const Scene& scene, const std::string& pointer);
+// Throws where two loads hold a node at different temperatures.
+void check_held_temperatures(const Scene& scene);
 
 // "/output/forces": the resultants that a scene asks for, by names of interfaces, of loads, of springs, or of
 // sets that motions drive. The rest of the scene has been read.

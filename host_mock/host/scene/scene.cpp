@@ -3,8 +3,8 @@
 
 #include "scene/json_text.hpp"
 #include "scene/readers.hpp"
-#include "scene/selection.hpp"
 #include "scene/validation.hpp"
+#include "scene/values.hpp"
 #include "scene/warnings.hpp"
 
 #include <algorithm>
@@ -102,6 +102,7 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   const json loads = scene.source.value("loads", json::array());
   for (std::size_t i = 0; i < loads.size(); ++i)
     scene.loads.push_back(read_load(loads[i], *scene.model, at("/loads", i)));
+  check_held_temperatures(scene);
   if (std::any_of(springs.begin(), springs.end(), [](const Spring& spring) { return spring.damping > 0.0; }))
     scene.loads.push_back(std::make_unique<Dampers>(*scene.model, springs));  // after those with a number
   for (std::size_t i = 0; i < scene.source["interfaces"].size(); ++i)
@@ -117,6 +118,7 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   warn_of_strength(scene);
   warn_of_memory(scene);
   warn_of_locking(scene);
+  warn_of_temperatures(scene);
   return scene;
 }
 

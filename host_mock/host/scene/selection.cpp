@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/selection.hpp"
+#include "scene/values.hpp"
 
 #include "base/words.hpp"
 #include "scene/json_text.hpp"
-#include "scene/values.hpp"
+#include "scene/readers.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <iterator>
 #include <set>
+#include <utility>
 
 namespace ilaw::host {
 namespace {
@@ -73,15 +75,10 @@ NodeSet listed(const json& numbers, const Model& model, const std::string& point
   return part_of(model.sets().at("all"), nodes.indices());
 }
 
-Vector position_of(const Model& model, int node) {
-  return model.position().segment(node * model.dimension(), model.dimension());
-}
-
 int nearest(const Vector& x, const Model& model) {
   int best = 0;
   for (int node = 1; node < model.node_count(); ++node)
-    if ((position_of(model, node) - x).squaredNorm() < (position_of(model, best) - x).squaredNorm())
-      best = node;
+    if ((model.position(node) - x).squaredNorm() < (model.position(best) - x).squaredNorm()) best = node;
   return best;
 }
 
@@ -108,11 +105,23 @@ NodeSet inside(const json& selection, const Model& model, const std::string& poi
   const Vector high = read_vector(selection["box"][1], model.dimension(), pointer + "/box/1");
   std::vector<std::size_t> indices;
   for (std::size_t k = 0; k < set.nodes.size(); ++k) {
-    const Vector x = position_of(model, set.nodes[k]);
+    const Vector x = model.position(set.nodes[k]);
     if ((x.array() >= low.array()).all() && (x.array() <= high.array()).all()) indices.push_back(k);
   }
   if (indices.empty()) throw mistake(pointer + "/box", "no node inside", "at least one");
   return part_of(set, indices);
+}
+
+// ---- names for nodes ----
+
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+bool is_in_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+void check_name(const std::string& name, const Model& model, const std::string& pointer) {
+  if (name.empty() || !is_letter(name.front()) || !std::all_of(name.begin(), name.end(), is_in_name))
+    throw mistake(pointer, "the name '" + name + "'", "a letter, then letters, digits and _");
+  if (model.sets().count(name) > 0)
+    throw mistake(pointer, "'" + name + "', which the model has", "a name of its own");
 }
 
 }  // namespace
@@ -128,6 +137,17 @@ NodeSet select_nodes(const json& nodes, const Model& model, const std::string& p
 
 const NodeSet& select_surface(const std::string& name, const Model& model, const std::string& pointer) {
   return find_set(name, model, true, pointer);
+}
+
+// By the model's own sets, not by each other: members of a JSON object have no order.
+void read_sets(const json& sets, Model& model) {
+  std::vector<std::pair<std::string, NodeSet>> found;
+  for (const auto& [name, selection] : sets.items()) {
+    const std::string pointer = "/sets/" + name;
+    check_name(name, model, pointer);
+    found.emplace_back(name, select_nodes(selection, model, pointer));
+  }
+  for (auto& [name, set] : found) model.add_set(name, std::move(set));
 }
 
 }  // namespace ilaw::host

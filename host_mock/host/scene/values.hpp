@@ -1,9 +1,10 @@
-// values.hpp - vectors, tables and motions of a scene. All throw SceneError at the pointer.
+// values.hpp - vectors, tables, motions and nodes of a scene. All throw SceneError at the pointer.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "base/table.hpp"
 #include "base/vector.hpp"
+#include "model/model.hpp"
 #include "model/obstacle.hpp"
 
 #include <nlohmann/json.hpp>
@@ -29,5 +30,12 @@ Table read_table(const nlohmann::json& rows, int width, const std::string& point
 
 // "velocity", "path" or neither.
 Motion read_motion(const nlohmann::json& object, int dimension, const std::string& pointer);
+
+// "all" or the name of a set; [0, 3]; {"near": [x, y, z]}, the nearest node, or those nearest to a
+// list of places; {"box": [[...], [...]], "of": set}, those inside. Throws SceneError at the pointer.
+NodeSet select_nodes(const nlohmann::json& nodes, const Model& model, const std::string& pointer);
+
+// As above, for a set that must have facets.
+const NodeSet& select_surface(const std::string& name, const Model& model, const std::string& pointer);
 
 }  // namespace ilaw::host

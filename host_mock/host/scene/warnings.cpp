@@ -256,4 +256,16 @@ void warn_of_locking(Scene& scene) {
   }
 }
 
+void warn_of_temperatures(Scene& scene) {
+  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
+    const Interface& interface = *scene.interfaces[i];
+    const InterfaceSetup& setup = interface.setup();
+    if (!setup.heat || !setup.heat->obstacle_temperature) continue;
+    if (interface.heat()->reads("counterpart_temperature")) continue;
+    const json& found = scene.source["interfaces"][i]["obstacle"]["temperature"];
+    scene.warnings.push_back(at("/interfaces", i) + "/obstacle/temperature: found " + found.dump() +
+                             ", which law '" + setup.law + "' does not read: nothing is conducted");
+  }
+}
+
 }  // namespace ilaw::host

@@ -24,5 +24,7 @@ void warn_of_strength(Scene& scene);
 void warn_of_memory(Scene& scene);
 // Blocks that can hardly bend: full elements close to incompressibility.
 void warn_of_locking(Scene& scene);
+// Temperatures of obstacles that no law reads.
+void warn_of_temperatures(Scene& scene);
 
 }  // namespace ilaw::host

@@ -2,10 +2,10 @@
 #include "step/accounts.hpp"
 
 #include "base/bytes.hpp"
+#include "base/words.hpp"
 #include "step/coupled_step.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <numeric>
 
 namespace ilaw::host {
@@ -137,40 +137,36 @@ bool Accounts::has_diverged(const Model& model, const Dofs& v, double speed, dou
 
 std::string Accounts::step_warning(double dt) const {
   if (!(dt > tally_.stable_step)) return "";
-  std::array<char, 160> text{};
-  std::snprintf(
-      text.data(), text.size(),
+  return formatted(
       "the time step is %g, where a law is stable up to %g at its nodes: an explicit spring is too stiff for it",
       dt, tally_.stable_step);
-  return text.data();
 }
 
 std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const EnergyReport& energy) const {
   std::vector<std::string> warnings;
-  const auto say = [&](const char* format, auto... values) {
-    std::array<char, 320> text{};
-    std::snprintf(text.data(), text.size(), format, values...);
-    warnings.emplace_back(text.data());
-  };
   if (tally_.unconverged > 0 && tally_.coupling_energy > rounding_energy * energy.scale)
-    say("contacts that share nodes are not solved in %lld of %lld steps, the start included: residual up to %.1e after %d sweeps, "
+    warnings.push_back(formatted(
+        "contacts that share nodes are not solved in %lld of %lld steps, the start included: residual up to %.1e after %d sweeps, "
         "expected %g; the energy is wrong by up to %.2g, where %.2g is the largest in the run",
         static_cast<long long>(tally_.unconverged), static_cast<long long>(steps) + 1,
         tally_.coupling_residual_max, static_cast<int>(CoupledStep::most_sweeps), CoupledStep::tolerance,
-        tally_.coupling_energy, energy.scale);
+        tally_.coupling_energy, energy.scale));
   if (tally_.left_surface > 0)
-    say("%lld node(s) went over the border of a surface while they touched it: beyond it nothing holds them; a node "
+    warnings.push_back(formatted(
+        "%lld node(s) went over the border of a surface while they touched it: beyond it nothing holds them; a node "
         "that shall stay needs a surface that reaches farther",
-        static_cast<long long>(tally_.left_surface));
+        static_cast<long long>(tally_.left_surface)));
   if (dt > tally_.stable_step) warnings.push_back(step_warning(dt));
   if (energy.kinetic > much_vibration * energy_.largest())
-    say("the kinetic energy is %.2g, where all that was put in is at most %.2g: the fastest vibration of the "
+    warnings.push_back(formatted(
+        "the kinetic energy is %.2g, where all that was put in is at most %.2g: the fastest vibration of the "
         "mesh grows from step to step, as it does at the critical step; \"cfl\": 0.999 bounds it",
-        energy.kinetic, energy_.largest());
+        energy.kinetic, energy_.largest()));
   if (energy.reaction_work > much_energy * energy.scale + rounding_energy_ + tally_.coupling_energy)
-    say("interfaces put in the energy %.2g, where %.2g is the largest in the run: an explicit penalty too stiff "
+    warnings.push_back(formatted(
+        "interfaces put in the energy %.2g, where %.2g is the largest in the run: an explicit penalty too stiff "
         "for the time step does, and one that is pressed in at the start; contact, friction and bonds do not",
-        energy.reaction_work, energy.scale);
+        energy.reaction_work, energy.scale));
   return warnings;
 }
 

@@ -3,13 +3,12 @@
 #include "step/integrator.hpp"
 
 #include "base/running_law.hpp"
+#include "base/words.hpp"
 #include "model/elements.hpp"
 #include "step/dof_loops.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 #include <string>
 
@@ -41,9 +40,8 @@ struct WildMotion {
   wild.cwiseAbs().maxCoeff(&largest);
   while (dof < wild.size() && std::isfinite(wild[dof])) ++dof;
   if (dof == wild.size()) dof = largest;
-  std::array<char, 32> value{};  // with an exponent: it may have 300 digits
-  std::snprintf(value.data(), value.size(), " %g", wild[dof]);
-  throw Diverged(motion.name + std::string(value.data()) + " at node " +
+  // With an exponent: it may have 300 digits.
+  throw Diverged(motion.name + formatted(" %g", wild[dof]) + " at node " +
                  std::to_string(dof / motion.model.dimension()) + ", step " + std::to_string(motion.step) +
                  ", time " + std::to_string(motion.time) +
                  advice_on_divergence(motion.model, motion.u, motion.dt));
@@ -251,11 +249,10 @@ void Integrator::take_heat() {
 // An unstable step closes its energy balance, too: what the bodies gain in motion they lose in stored energy.
 void Integrator::check_energy() const {
   if (!accounts_.has_diverged(model_, v_, speed_before_, dt_, steps_)) return;
-  std::array<char, 160> text{};
-  std::snprintf(
-      text.data(), text.size(), "the kinetic energy is %.3g, where %.3g was put in, step %lld, time %g",
-      kinetic_energy(model_, v_), accounts_.energy().put_in(), static_cast<long long>(steps_), time());
-  throw Diverged(text.data() + advice_on_divergence(model_, u_, dt_));
+  throw Diverged(formatted("the kinetic energy is %.3g, where %.3g was put in, step %lld, time %g",
+                           kinetic_energy(model_, v_), accounts_.energy().put_in(),
+                           static_cast<long long>(steps_), time()) +
+                 advice_on_divergence(model_, u_, dt_));
 }
 
 // A speed whose square is infinite has no kinetic energy, either.

@@ -5,7 +5,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "base/stopwatch.hpp"
+#include "base/clock.hpp"
 #include "contact/interface.hpp"
 #include "model/load.hpp"
 #include "step/accounts.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/bench_files.hpp"
+#include "bench/measure.hpp"
 
 #include "base/csv.hpp"
 #include "base/files.hpp"

@@ -91,7 +91,6 @@ BenchLaw::BenchLaw(const ilaw::library& library, const BenchCase& bench_case)
     // A law that tells its tangents apart wants them from the host.
     if (refusal.code() != ILAW_UNSUPPORTED || setup.frame == ILAW_FRAME_LOCAL || dimension_ < 3) throw;
     setup.has_tangent = 1;
-    takes_tangents_ = true;
     interface_.emplace(create_law(name_, arguments, setup, library));
   }
   if (bench_case.floats) {

@@ -27,7 +27,6 @@ class BenchLaw {
   const ilaw_instance_info& info() const { return info_; }
   const ilaw_law& law() const { return interface_->law(); }
   int dimension() const { return dimension_; }
-  bool takes_tangents() const { return takes_tangents_; }
   const std::vector<double>& per_node_values() const { return per_node_values_; }
 
   // Throw std::runtime_error with the law's reason where it refuses a node.
@@ -47,7 +46,6 @@ class BenchLaw {
   ilaw_instance_info info_{};
   const ilaw_profile* profile_ = nullptr;
   int dimension_ = 3;
-  bool takes_tangents_ = false;
   std::vector<double> per_node_values_;  // one for each parameter given per node, in their order
 };
 

@@ -7,8 +7,10 @@
 #include <ilaw/loader.hpp>
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace ilaw::host {
 
@@ -28,5 +30,11 @@ void check_bench(const ilaw::library& library, const BenchCase& bench_case, std:
 // Medians over the repetitions, of the thread's own time.
 BenchResult run_bench(const ilaw::library& library, const BenchCase& bench_case, std::int64_t nodes,
                       int repetitions);
+
+nlohmann::json json_of(const BenchResult& result);
+// bench.csv in the folder.
+void write_bench(const std::vector<BenchResult>& results, const std::filesystem::path& folder);
+// bench.png and .svg of it. The folder is absolute.
+bool draw_bench(const std::vector<BenchResult>& results, const std::filesystem::path& folder);
 
 }  // namespace ilaw::host

@@ -99,7 +99,7 @@ Ledger::Ends Ledger::ends_of(const Interface& interface, int contact, const Inte
     const ContactPoint point = counterpart.contact_point(k, integrator.displacement(), time);
     const SurfaceVelocities turn =
         surface_velocities(counterpart, k, integrator.displacement(), time, {point.gap, point.normal},
-                           counterpart.rates({time - scene_.dt, time, time + scene_.dt}));
+                           counterpart.obstacle()->rates(time - scene_.dt, time, time + scene_.dt));
     before += turn.before;
     after += turn.after;
   }

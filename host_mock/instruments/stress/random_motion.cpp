@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stress/random_motion.hpp"
+#include "stress/random_parts.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,7 @@
 #include "contact/law_arguments.hpp"
 #include "scene/arguments.hpp"
 #include "stress/draw.hpp"
-#include "stress/random_motion.hpp"
-#include "stress/random_parameters.hpp"
+#include "stress/random_parts.hpp"
 
 #include <algorithm>
 #include <cmath>

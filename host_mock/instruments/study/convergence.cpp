@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "study/convergence.hpp"
 
+#include "base/csv.hpp"
+#include "base/files.hpp"
+#include "plot/gnuplot.hpp"
 #include "scene/json_text.hpp"
 
 #include <cstdio>
+#include <ostream>
 
 namespace ilaw::host {
 namespace {
@@ -15,6 +19,58 @@ Scene scene_at(const json& source, const Sweep& sweep, int level, const std::fil
   Scene scene = read_scene(refined(source, sweep, sweep.refinement(level)), file);
   if (scene.output.watch.empty()) throw mistake("/output/watch", "no node", "those to compare");
   return scene;
+}
+
+// ---- files ----------------------------------------------------------------------------------------------
+
+void write_table(const ErrorTable& table, const std::filesystem::path& folder) {
+  AtomicFile file(folder / "converge.csv");
+  CsvWriter csv(file.stream(), 10);
+  csv << "dt"
+      << "steps"
+      << "seconds";
+  for (const char* norm : norm_names) csv << norm;
+  csv.end_row();
+  for (std::size_t k = 0; k < table.errors.size(); ++k) {
+    csv << table.runs[k].dt << table.runs[k].steps << table.runs[k].seconds;
+    for (std::size_t n = 0; n < norm_names.size(); ++n) csv.add_if_finite(table.errors[k][n]);
+    csv.end_row();
+  }
+  file.commit();
+}
+
+void write_orders(const ErrorTable& table, const Sweep& sweep, const std::string& title,
+                  const std::filesystem::path& folder) {
+  json orders;
+  for (std::size_t n = 0; n < norm_names.size(); ++n)
+    orders[norm_names[n]] = table.order(n);  // NaN is written as null
+  const json found = {{"title", title},
+                      {"reference", table.exact ? "exact solution" : "finest run"},
+                      {"refined", sweep.with_mesh ? "mesh and time step" : "time step"},
+                      {"levels", sweep.levels},
+                      {"orders", orders}};
+  write_file(folder / "converge.json", found.dump(2) + "\n");
+}
+
+// Errors over one column of the table, in the given unit.
+struct Abscissa {
+  int column;
+  double unit;
+  const char *label, *key_corner;
+};
+
+void write_panel(const ErrorTable& table, const std::string& csv, const Abscissa& over,
+                 std::ostream& script) {
+  script << "set xlabel '" << over.label << "'\nset key bottom " << over.key_corner << " noenhanced\nplot ";
+  for (std::size_t n = 0; n < 3; ++n)
+    script << (n ? ", " : "") << csv << " using ($" << over.column << '/' << over.unit << "):" << n + 4
+           << " with linespoints linewidth 1.5 pointtype " << n + 5 << " linecolor rgb '" << curve_colours[n]
+           << "' title '" << norm_names[n] << "'";
+  if (over.column == 1) {
+    const double h = table.runs[0].dt, top = table.errors[0][norm_u_L2];
+    script << ", " << top / h << "*x with lines dashtype 2 linecolor rgb '#808080' title 'order 1'";
+  }
+  script << "\n";
 }
 
 }  // namespace
@@ -49,6 +105,25 @@ ErrorTable run_levels(const json& source, const Sweep& sweep, const std::filesys
   for (std::size_t k = 0; !table.exact && k + 1 < table.runs.size(); ++k)
     table.errors.push_back(errors_against(table.runs.back(), table.runs[k]));
   return table;
+}
+
+void write_convergence(const ErrorTable& table, const Sweep& sweep, const std::string& title,
+                       const std::filesystem::path& folder) {
+  write_table(table, folder);
+  write_orders(table, sweep, title, folder);
+}
+
+bool draw_convergence(const ErrorTable& table, const std::string& title,
+                      const std::filesystem::path& folder) {
+  // Run times of machines differ: over that of the finest run that is compared.
+  const double finest = table.runs[table.errors.size() - 1].seconds;
+  const std::string csv = in_quotes((folder / "converge.csv").string());
+  const Sheet sheet{folder / "converge", 1000, 460, "layout 1,2 title " + in_quotes(title) + " noenhanced"};
+  return draw_sheet(sheet, [&](std::ostream& script) {
+    script << log_axes;
+    write_panel(table, csv, {1, 1.0, "time step", "right"}, script);
+    write_panel(table, csv, {3, finest, "run time / that of the finest run", "left"}, script);
+  });
 }
 
 }  // namespace ilaw::host

@@ -1,4 +1,4 @@
-// convergence.hpp - errors of a scene for a sweep of time steps, or of meshes with them.
+// convergence.hpp - errors of a scene for a sweep of time steps, or of meshes with them, and their files.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace ilaw::host {
@@ -26,5 +27,13 @@ void check_sweep(const nlohmann::json& source, const Sweep& sweep, const std::fi
 
 // Runs all levels; says on stderr how far it is.
 ErrorTable run_levels(const nlohmann::json& source, const Sweep& sweep, const std::filesystem::path& file);
+
+// converge.csv with the errors, converge.json with their orders.
+void write_convergence(const ErrorTable& table, const Sweep& sweep, const std::string& title,
+                       const std::filesystem::path& folder);
+
+// converge.png and .svg, by gnuplot: errors over the time step, and over the run time. The folder
+// is absolute. Says on stderr why there are none.
+bool draw_convergence(const ErrorTable& table, const std::string& title, const std::filesystem::path& folder);
 
 }  // namespace ilaw::host

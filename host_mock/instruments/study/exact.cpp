@@ -2,7 +2,6 @@
 #include "study/exact.hpp"
 
 #include "study/exact_parts.hpp"
-#include "study/exact_postit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +13,52 @@ namespace {
 
 using nlohmann::json;
 
-// First fall t1 = sqrt(2 h0/g); flights of 2 e^k t1, which start with e^k g t1 (Moreau 1988).
+// Thrown along a plane from above it, under gravity. First fall t1 = sqrt(2 h0/g); flights of 2 e^k t1, which
+// start with e^k g t1 (Moreau 1988). Every bounce takes mu (1 + e) times the speed of arrival from the
+// sliding, as long as there is any; then mu g does.
+struct ThrownPoint {
+  struct Motion {
+    double x, y, vx, vy;  // from where it started; along the plane and across it
+  };
+
+  double mass, gravity, height, speed, e, mu;
+
+  double fall() const { return std::sqrt(2.0 * height / gravity); }
+  double energy() const { return mass * (gravity * height + 0.5 * speed * speed); }
+  Motion at(double time) const {
+    const double g = gravity, rest = e < 1.0 ? fall() * (1.0 + e) / (1.0 - e) : INFINITY;
+    if (time < fall()) return {speed * time, -0.5 * g * time * time, speed, -g * time};
+    double since = fall(), x = speed * fall(), vx = speed, arrives = g * fall();
+    while (arrives > 1e-18 * g * fall()) {
+      vx = std::max(vx - mu * (1.0 + e) * arrives, 0.0);
+      arrives *= e;
+      const double flight = std::min(2.0 * arrives / g, rest - since);
+      if (time < since + flight) {
+        const double t = time - since;
+        return {x + vx * t, -height + t * (arrives - 0.5 * g * t), vx, arrives - g * t};
+      }
+      since += flight;
+      x += vx * flight;
+    }
+    const double t = vx > 0.0 ? std::min(time - rest, vx / (mu * g)) : 0.0;
+    return {x + t * (vx - 0.5 * mu * g * t), -height, vx - mu * g * t, 0.0};
+  }
+  double work(double time) const {
+    const auto [x, y, vx, vy] = at(time);
+    return mass * (0.5 * (vx * vx + vy * vy) + gravity * (height + y)) - energy();
+  }
+};
+
+// Its motion across the plane. The impulse is the momentum that gravity alone does not explain.
+ExactNode across(const ThrownPoint& thrown) {
+  ExactNode node = node_of([=](double time) {
+    const auto now = thrown.at(time);
+    return Motion1D{now.y, now.vy};
+  });
+  node.impulse = [=](double time) { return thrown.mass * (thrown.at(time).vy + thrown.gravity * time); };
+  return node;
+}
+
 ExactNode bouncing_ball(const Scene& scene) {
   const std::string wanted = "one point at rest in 1D under gravity, above a plane, with law 'contact'";
   const auto [model, point, interface, loads, parameters] = one_body(scene, "points", wanted);
@@ -25,34 +69,12 @@ ExactNode bouncing_ball(const Scene& scene) {
   const double g = -loads[0]["acceleration"][0].get<double>();
   const double height = point["position"][0].get<double>() - interface["obstacle"]["point"][0].get<double>();
   require(g > 0.0 && height > 0.0, wanted);
-  const double e = parameters.value("restitution", 0.0);
-  const double fall = std::sqrt(2.0 * height / g), mass = point["mass"].get<double>();
-
-  // Start and speed of the flight that is under way.
-  const auto flight = [=](double time) {
-    double start = fall, speed = e * g * fall;
-    const double rest = e < 1.0 ? fall * (1.0 + e) / (1.0 - e) : INFINITY;
-    if (time >= rest) return std::pair{time, 0.0};
-    while (time > start + 2.0 * speed / g) {
-      start += 2.0 * speed / g;
-      speed *= e;
-    }
-    return std::pair{start, speed};
-  };
-  ExactNode node = node_of([=](double time) -> Motion1D {
-    if (time < fall) return {-0.5 * g * time * time, -g * time};
-    const auto [start, speed] = flight(time);
-    return {-height + (time - start) * (speed - 0.5 * g * (time - start)), speed - g * (time - start)};
-  });
-  node.instants.first_impulse = fall;
-  // The momentum that gravity alone does not explain; what is missing of the speed of the first fall.
-  node.impulse = [=, velocity = node.velocity](double time) { return mass * (velocity(time) + g * time); };
-  node.work = [=](double time) {
-    if (time < fall) return 0.0;
-    const double speed = flight(time).second;
-    return 0.5 * mass * (speed * speed - g * fall * g * fall);
-  };
-  node.energy = mass * g * height;
+  const ThrownPoint ball{point["mass"].get<double>(),          g,  height, 0.0,
+                         parameters.value("restitution", 0.0), 0.0};
+  ExactNode node = across(ball);
+  node.instants.first_impulse = ball.fall();
+  node.work = [=](double time) { return ball.work(time); };
+  node.energy = ball.energy();
   return node;
 }
 
@@ -114,38 +136,6 @@ ExactNode impact_oscillator(const Scene& scene) {
   return node;
 }
 
-// Thrown along a plane from above it, under gravity: bounces as above, of which every one takes
-// mu (1 + e) times the speed of arrival from the sliding, as long as there is any (Moreau 1988); then
-// mu g.
-struct ThrownPoint {
-  struct Motion {
-    double x, y, vx, vy;  // from where it started; along the plane and across it
-  };
-
-  double mass, gravity, height, speed, e, mu;
-
-  double fall() const { return std::sqrt(2.0 * height / gravity); }
-  double energy() const { return mass * (gravity * height + 0.5 * speed * speed); }
-  Motion at(double time) const {
-    const double g = gravity, rest = fall() * (1.0 + e) / (1.0 - e);
-    if (time < fall()) return {speed * time, -0.5 * g * time * time, speed, -g * time};
-    double since = fall(), x = speed * fall(), vx = speed, arrives = g * fall();
-    while (arrives > 1e-18 * g * fall()) {
-      vx = std::max(vx - mu * (1.0 + e) * arrives, 0.0);
-      arrives *= e;
-      const double flight = std::min(2.0 * arrives / g, rest - since);
-      if (time < since + flight) {
-        const double t = time - since;
-        return {x + vx * t, -height + t * (arrives - 0.5 * g * t), vx, arrives - g * t};
-      }
-      since += flight;
-      x += vx * flight;
-    }
-    const double t = std::min(time - rest, vx / (mu * g));
-    return {x + t * (vx - 0.5 * mu * g * t), -height, vx - mu * g * t, 0.0};
-  }
-};
-
 ThrownPoint thrown_point_of(const Scene& scene) {
   const std::string wanted =
       "one point in 2D that is thrown along a plane with normal [0, 1], under gravity, with law 'coulomb', "
@@ -173,19 +163,11 @@ std::vector<ExactNode> oblique_impact(const Scene& scene) {
     const auto now = thrown.at(time);
     return Motion1D{now.x, now.vx};
   });
-  ExactNode across = node_of([=](double time) {
-    const auto now = thrown.at(time);
-    return Motion1D{now.y, now.vy};
-  });
   along.impulse = [=](double time) { return thrown.mass * (thrown.at(time).vx - thrown.speed); };
   along.energy = thrown.energy();
-  along.work = [=](double time) {
-    const auto [x, y, vx, vy] = thrown.at(time);
-    return thrown.mass * (0.5 * (vx * vx + vy * vy) + thrown.gravity * (thrown.height + y)) - thrown.energy();
-  };
+  along.work = [=](double time) { return thrown.work(time); };
   along.instants.first_impulse = thrown.fall();
-  across.impulse = [=](double time) { return thrown.mass * (thrown.at(time).vy + thrown.gravity * time); };
-  return {along, across};
+  return {along, across(thrown)};
 }
 
 // The sum of the forces on a point: linear between the knots of all of them.

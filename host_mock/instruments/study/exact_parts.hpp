@@ -1,5 +1,5 @@
 // exact_parts.hpp - parts of exact solutions, and the solutions of elastic bars on walls, on planes, on each
-// other, glued. Derivations: docs/theory/shipped_scenes.md.
+// other, glued, and of a point under the Post-it law. Derivations: docs/theory/shipped_scenes.md.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -36,5 +36,23 @@ ExactNode bouncing_bar(const Scene& scene);
 ExactNode held_rod(const Scene& scene);
 ExactNode glued_bar(const Scene& scene);
 std::vector<ExactNode> two_bars(const Scene& scene);
+
+// In one dimension, from rest on the plane, moved by a force that never pushes and by shocks of
+// either sign. Rupture is brittle.
+struct PostitPoint {
+  struct Knot {
+    double time, force;  // linear between knots, constant outside
+  };
+  struct Shock {
+    double time, impulse;
+  };
+  double mass;
+  std::vector<Knot> knots;    // at least one, in the order of time
+  std::vector<Shock> shocks;  // in the order of time
+  double initial_adhesion, adhesion_limit, efficiency_decrease, memory;
+  double end;
+};
+
+ExactNode postit_motion(const PostitPoint& point);
 
 }  // namespace ilaw::host

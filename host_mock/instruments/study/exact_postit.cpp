@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "study/exact_postit.hpp"
+#include "study/exact_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <vector>
 
 namespace ilaw::host {
 namespace {

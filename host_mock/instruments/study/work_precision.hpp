@@ -64,4 +64,12 @@ Cost cost_of(const std::vector<MeasuredRun>& runs, Norm norm, double error);
 // The errors that tables ask for.
 constexpr std::array<double, 7> wanted_errors{1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4};
 
+// study.csv with all runs, study_needed.csv with what errors cost, study.json with the laws and their
+// largest stable steps.
+void write_study(const Study& study, const std::string& title, const std::filesystem::path& folder);
+
+// study.png and .svg, by gnuplot: errors over the number of steps and over the run time. The folder is
+// absolute. Says on stderr why there are none.
+bool draw_study(const Study& study, const std::string& title, const std::filesystem::path& folder);
+
 }  // namespace ilaw::host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "study/work_precision_files.hpp"
+#include "study/work_precision.hpp"
 
 #include "base/csv.hpp"
 #include "base/files.hpp"

@@ -2,12 +2,14 @@
 """The experiment of docs/results/oblique_sphere.py, at some of its angles, and what a rigid sphere does."""
 import importlib.util
 import os
+import sys
 from pathlib import Path
 
 import pytest
 
 pytest.importorskip("matplotlib")
 FILE = Path(os.environ["ILAW_SOURCE"]) / "docs/results/oblique_sphere.py"
+sys.path.insert(0, str(FILE.parent))  # for case_script
 spec = importlib.util.spec_from_file_location("oblique_sphere", FILE)
 sphere = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(sphere)

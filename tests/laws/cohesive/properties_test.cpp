@@ -8,7 +8,7 @@ namespace {
 // dissipated are not negative, the opening is not negative, and the work is what was stored and dissipated.
 TEST(CohesiveProperties, HoldForAnyMotion) {
   Draw draw(11);
-  int broken = 0, rubbed = 0, partly = 0, several = 0;
+  int broken = 0, slipping = 0, partly = 0, several = 0;
   for (int bond = 0; bond < 1000; ++bond) {
     Hung node(draw.bond(), draw.decades(-3.0, 0.0));
     node.area = draw.between(0.1, 2.0);
@@ -41,13 +41,13 @@ TEST(CohesiveProperties, HoldForAnyMotion) {
       }
       ASSERT_LE(std::abs(balance), scale) << "bond " << bond << ", step " << k;
       broken += node.status == ILAW_BROKEN;
-      rubbed += node.energy[ILAW_ENERGY_FRICTION] > 0.0;
+      slipping += node.energy[ILAW_ENERGY_FRICTION] > 0.0;
       partly += damage > 0.0 && damage < 1.0;
     }
   }
   EXPECT_LT(several, 250);
   EXPECT_GT(broken, 250);
-  EXPECT_GT(rubbed, 2500);
+  EXPECT_GT(slipping, 2500);
   EXPECT_GT(partly, 25000);
 }
 

@@ -5,8 +5,6 @@
 namespace ilaw::testing {
 namespace {
 
-double tangential(const Vector& a) { return std::hypot(a[1], a[2]); }
-
 // Oblique impact of a point, no force (v_free = v^-): sticks or slides throughout, leaves with e v_z and
 // v_x - mu (1+e) v_z where that is positive. Energy never grows at any angle.
 TEST(Coulomb, ObliqueImpactFollowsItsClosedForm) {
@@ -49,18 +47,19 @@ TEST(Coulomb, KeepsComplementarityConeAndDirectionAtAnyScale) {
       }
       ASSERT_GT(node.r[0], 0.0) << "friction " << friction << ", k " << k;
       ASSERT_NEAR(node.v[0], 0.0, 2 * ulp * scale) << "friction " << friction << ", k " << k;
-      ASSERT_LE(tangential(node.r), friction * node.r[0] * (1.0 + 8 * ulp) + 1e-323)
+      ASSERT_LE(tangential_length(node.r), friction * node.r[0] * (1.0 + 8 * ulp) + 1e-323)
           << "friction " << friction << ", k " << k;
       if (node.status == ILAW_STICK) {
         ++sticks;
-        ASSERT_NEAR(tangential(node.v), 0.0, 4 * ulp * scale) << "friction " << friction << ", k " << k;
+        ASSERT_NEAR(tangential_length(node.v), 0.0, 4 * ulp * scale)
+            << "friction " << friction << ", k " << k;
       } else {
         ++slips;
         ASSERT_EQ(node.status, ILAW_SLIP) << "friction " << friction << ", k " << k;
         // On the cone, and opposite to the slip: r_T x v_T = 0, r_T . v_T <= 0.
-        ASSERT_NEAR(tangential(node.r), friction * node.r[0], 8 * ulp * friction * node.r[0] + 1e-322)
+        ASSERT_NEAR(tangential_length(node.r), friction * node.r[0], 8 * ulp * friction * node.r[0] + 1e-322)
             << "friction " << friction << ", k " << k;
-        const double limit = 16 * ulp * tangential(node.r) * scale + 1e-300;
+        const double limit = 16 * ulp * tangential_length(node.r) * scale + 1e-300;
         ASSERT_NEAR(node.r[1] * node.v[2], node.r[2] * node.v[1], limit)
             << "friction " << friction << ", k " << k;
         ASSERT_LE(node.r[1] * node.v[1] + node.r[2] * node.v[2], limit)

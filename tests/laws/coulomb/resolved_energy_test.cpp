@@ -2,6 +2,8 @@
 // docs/theory/resolved_impact.md.
 #include "resolved_friction.hpp"
 
+#include "support/law_batch.hpp"
+
 namespace ilaw::testing {
 namespace {
 
@@ -74,7 +76,7 @@ TEST(ResolvedFriction, MakesNoEnergyWhateverMovesIt) {
                      work = 0.5 * (dot(node.r, before) + dot(node.r, node.v));
         const double size =
             std::sqrt(dot(node.r, node.r)) * (std::sqrt(dot(before, before)) + std::sqrt(dot(free, free)) +
-                                              node.r[0] * node.h[0] + tangential(node.r) * node.h[1]);
+                                              node.r[0] * node.h[0] + tangential_length(node.r) * node.h[1]);
         const double rounding = 64 * ulp * (size + now + stored);
         expect_in_cone(node.r, friction);
         ASSERT_LE(0.5 * (node.r[1] * (before[1] + node.v[1]) + node.r[2] * (before[2] + node.v[2])) +
@@ -139,11 +141,52 @@ TEST(ResolvedFriction, RefusesWhatItDoesNotKnow) {
   EXPECT_GT(node.r[0], 0.0);
   for (const int entry : {2, 3, 4, 5}) {
     node.h = {1.0, 2.0, 2.0, 0.0, 0.0, 0.0};
-    node.h[static_cast<std::size_t>(entry)] += 0.1;
+    node.h[static_cast<std::size_t>(entry)] += 1e-4;
     EXPECT_EQ(node.step({-1.0, 0.5, 0.0}), ILAW_BAD_NODES) << "entry " << entry;
     EXPECT_STREQ(node.report.reason,
                  "H couples directions, or differs along the tangents, which these parameters do not serve");
   }
+}
+
+// H = diag(h_N, h_T, h_T) along random axes, which an ABI accepts to 1e-6: rounded to single precision as H
+// is, or as far off as they may be. The impulse is that of the transverse form to the error of the axes.
+TEST(ResolvedFriction, ServesAnIsotropicHAlongSingleAxes) {
+  constexpr std::size_t count = 2000;
+  constexpr double off = 0.99e-6;
+  const auto batch_of = [](std::uint32_t form) {
+    return LawBatch(make_law("coulomb", SetupBuilder(resolved(0.3, 0.5), 3, form, ILAW_FRAME_GLOBAL, true)),
+                    count);
+  };
+  LawBatch full = batch_of(ILAW_DELASSUS_FULL), transverse = batch_of(ILAW_DELASSUS_TRANSVERSE);
+  Random random(11);
+  const auto single = [](double x) { return double{static_cast<float>(x)}; };
+  for (std::size_t i = 0; i < count; ++i) {
+    const double h_n = random.decades(1.0), h_t = random.decades(1.0);
+    Vector n = random.vector();
+    n = (1.0 / length(n)) * n;
+    Vector t = tangential(random.vector(), n);
+    t = (1.0 / length(t)) * t;
+    const auto entry = [&](std::size_t a, std::size_t b) {
+      return (a == b ? h_t : 0.0) + (h_n - h_t) * n[a] * n[b];
+    };
+    full.h[i] = {entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2)};
+    if (i % 2 == 0) {
+      for (double& x : full.h[i]) x = single(x);
+      for (std::size_t c = 0; c < 3; ++c) n[c] = single(n[c]), t[c] = single(t[c]);
+    } else {
+      n = (1.0 + 0.5 * off * (i % 4 == 1 ? 1.0 : -1.0)) * n;
+      t = t + (i % 8 < 4 ? off : -off) * n;
+    }
+    transverse.h[i] = {h_n, h_t, 0.0, 0.0, 0.0, 0.0};
+    full.normal[i] = transverse.normal[i] = n;
+    full.tangent[i] = transverse.tangent[i] = t;
+    const Vector v = random.vector();
+    full.v_free[i] = full.v_previous[i] = transverse.v_free[i] = transverse.v_previous[i] = v;
+  }
+  ASSERT_EQ(full.evaluate(), ILAW_OK) << full.report.bad_count << ": " << full.report.reason;
+  ASSERT_EQ(transverse.evaluate(), ILAW_OK);
+  for (std::size_t i = 0; i < count; ++i)
+    ASSERT_LE(length(full.r[i] - transverse.r[i]), 1e-5 * length(transverse.r[i])) << i;
 }
 
 TEST(ResolvedFriction, AloneHasAState) {

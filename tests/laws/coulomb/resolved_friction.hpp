@@ -9,13 +9,11 @@ inline Parameters resolved(double friction, double restitution) {
   return {{{"friction", friction}, {"restitution", restitution}}, {{"activation", "resolved"}}};
 }
 
-inline double tangential(const Vector& a) { return std::hypot(a[1], a[2]); }
-
 inline void expect_in_cone(const Vector& r, double friction) {
   if (r[0] == 0.0)
     EXPECT_EQ(r, Vector{});
   else
-    EXPECT_LE(tangential(r), friction * r[0] * (1.0 + 8 * ulp));
+    EXPECT_LE(tangential_length(r), friction * r[0] * (1.0 + 8 * ulp));
 }
 
 struct Body {

@@ -10,7 +10,7 @@ namespace {
 // The tangential velocity after an impact of the speed w, in closed form: it slips on mu (1 + e) w/h_N, or
 // sticks. coupling: h_T/h_N, 1 of a point and 7/2 of the lowest point of a sphere.
 void rebound(Vector& v, double friction, double restitution, double coupling) {
-  const double speed = tangential(v), lost = friction * (1.0 + restitution) * -v[0] * coupling;
+  const double speed = tangential_length(v), lost = friction * (1.0 + restitution) * -v[0] * coupling;
   for (int c = 1; c < 3; ++c) v[c] *= speed > lost ? 1.0 - lost / speed : 0.0;
   v[0] *= -restitution;
 }

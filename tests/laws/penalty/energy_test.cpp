@@ -94,18 +94,18 @@ class ImplicitEnergy : public ::testing::TestWithParam<std::tuple<std::uint32_t,
     const double normal = springs.normal(node.state[0]) + node.state.back(),
                  tangent = springs.tangent(node.state);
     const double impact = -work[0] - (normal - held);
-    const double rubbed = -work[1] - work[2] - (tangent - springs.tangent(before));
+    const double dissipated = -work[1] - work[2] - (tangent - springs.tangent(before));
     double scale = normal + tangent + stored;
     for (std::size_t c = 0; c < 3; ++c)
       scale += std::abs(node.r[c]) * (std::abs(previous[c]) + std::abs(node.v[c]) + std::abs(node.v_free[c]));
     const double slack = 1e-12 * scale;
     ASSERT_GE(impact, -slack) << "draw " << seed << ", x " << before[0] << " -> " << node.state[0];
-    ASSERT_GE(rubbed, -slack) << "draw " << seed << ", slip " << before[2] << " -> " << node.state[2];
+    ASSERT_GE(dissipated, -slack) << "draw " << seed << ", slip " << before[2] << " -> " << node.state[2];
     ASSERT_NEAR(node.energy[ILAW_ENERGY_IMPACT], impact, slack) << "draw " << seed;
-    ASSERT_NEAR(node.energy[ILAW_ENERGY_FRICTION], rubbed, slack) << "draw " << seed;
+    ASSERT_NEAR(node.energy[ILAW_ENERGY_FRICTION], dissipated, slack) << "draw " << seed;
     ASSERT_NEAR(node.energy[ILAW_ENERGY_STORED], normal + tangent, 1e-14 * (normal + tangent));
     if (node.status == ILAW_STICK && springs.tangential < inf_value) {
-      ASSERT_LE(rubbed, slack) << "draw " << seed;
+      ASSERT_LE(dissipated, slack) << "draw " << seed;
     }
   }
 

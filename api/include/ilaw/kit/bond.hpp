@@ -168,6 +168,7 @@ struct adhesive_bond {
     const mask takes = product(r, velocity_before(node.v_previous, node.v_free)) <= 0.0;
     const mask stands = rigid & takes & law().surely_bears(r, node.velocity_step * node.area);
     node.impulse = select(stands, r, node.impulse);
+    node.rubbing = zero_unless(!stands, node.rubbing);
     return stands;
   }
   // A bond that has changed before and opens further most likely changes: it is left to the solver untried.
@@ -287,6 +288,8 @@ struct adhesive_bond {
       node.tangential_gain = zero_unless(where, e.tangential_gain);
       node.stored = zero_unless(where, e.stored);
       node.rupture = zero_unless(where, e.rupture);
+      const V broken_part = absolute((1.0 - Law<V>::broken) - 0.5 * (before.memory + a.state.memory));
+      node.rubbing = select(where, broken_part, node.rubbing);
     }
     node.impulse = select(where, a.impulse, node.impulse);
     node.state.memory = select(where, a.state.memory, node.state.memory);

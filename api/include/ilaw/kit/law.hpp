@@ -145,6 +145,25 @@ class parameter_member {
   grid Law::*grid_ = nullptr;
 };
 
+namespace detail {
+
+// The values that a parameter may have, for numbers and packs.
+struct parameter_range {
+  double minimum, excluded, maximum, beyond;
+
+  constexpr parameter_range(double least, bool excludes, double most, bool allows_infinity)
+      : minimum(least),
+        excluded(excludes ? least : not_a_number),
+        maximum(smaller(most, std::numeric_limits<double>::max())),
+        beyond(allows_infinity ? infinity : not_a_number) {}
+  template <class V>
+  ILAW_KIT_INLINE auto has(V value) const {
+    return (value >= minimum) & (value != excluded) & ((value <= maximum) | (value == beyond));
+  }
+};
+
+}  // namespace detail
+
 template <class Law>
 struct parameter {
   parameter_member<Law> member;
@@ -164,6 +183,9 @@ struct parameter {
   texts choices = {};        // a choice: the member is double and holds the index
   texts axes = over_time;    // over which a V or a grid may be a table
 
+  constexpr detail::parameter_range range() const {
+    return {minimum, minimum_excluded, maximum, infinity_allowed};
+  }
   // Copies that differ in one thing.
   constexpr parameter with_doc(const char* text) const {
     parameter copy = *this;

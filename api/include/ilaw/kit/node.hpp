@@ -114,6 +114,7 @@ struct node {
   // dissipated.
   V normal_gain = 0.0, tangential_gain = 0.0;
   V rupture = 0.0;  // part of these gains that is not stored: dissipated by rupture
+  V rubbing = 1.0;  // part of the area that may rub: where a bond holds there is no wear
   V amounts[own_amount_count<Law> + 1] = {};
   V refused = 0.0;  // code of a refusal
 

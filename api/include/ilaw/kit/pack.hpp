@@ -101,48 +101,34 @@ ILAW_KIT_COMPARE(is_equal, ==, _CMP_EQ_OQ)
 ILAW_KIT_COMPARE(is_different, !=, _CMP_NEQ_UQ)
 #undef ILAW_KIT_COMPARE
 
-ILAW_KIT_INLINE one_mask are_different(one_bits a, one_bits b) {
+// An operation of the level on registers, where it has one.
 #if defined(__AVX512F__)
-  return _mm512_cmpneq_epi64_mask((__m512i)a, (__m512i)b);
-#else
-  return a != b;
-#endif
-}
-
-ILAW_KIT_INLINE one larger_of(one a, one b) {
-#if defined(__AVX512F__)
-  return (one)_mm512_max_pd((__m512d)a, (__m512d)b);
+#define ILAW_KIT_ON_REGISTERS(operation) _mm512_##operation##_pd
+using native_one = __m512d;
 #elif defined(__AVX__)
-  return (one)_mm256_max_pd((__m256d)a, (__m256d)b);
+#define ILAW_KIT_ON_REGISTERS(operation) _mm256_##operation##_pd
+using native_one = __m256d;
 #elif defined(__SSE2__)
-  return (one)_mm_max_pd((__m128d)a, (__m128d)b);
-#else
-  return a > b ? a : b;
+#define ILAW_KIT_ON_REGISTERS(operation) _mm_##operation##_pd
+using native_one = __m128d;
 #endif
+#if defined(ILAW_KIT_ON_REGISTERS)
+ILAW_KIT_INLINE one larger_of(one a, one b) {
+  return (one)ILAW_KIT_ON_REGISTERS(max)((native_one)a, (native_one)b);
 }
 ILAW_KIT_INLINE one smaller_of(one a, one b) {
-#if defined(__AVX512F__)
-  return (one)_mm512_min_pd((__m512d)a, (__m512d)b);
-#elif defined(__AVX__)
-  return (one)_mm256_min_pd((__m256d)a, (__m256d)b);
-#elif defined(__SSE2__)
-  return (one)_mm_min_pd((__m128d)a, (__m128d)b);
-#else
-  return a < b ? a : b;
-#endif
+  return (one)ILAW_KIT_ON_REGISTERS(min)((native_one)a, (native_one)b);
 }
-ILAW_KIT_INLINE one root_of(one x) {
-#if defined(__AVX512F__)
-  return (one)_mm512_sqrt_pd((__m512d)x);
-#elif defined(__AVX__)
-  return (one)_mm256_sqrt_pd((__m256d)x);
-#elif defined(__SSE2__)
-  return (one)_mm_sqrt_pd((__m128d)x);
+ILAW_KIT_INLINE one root_of(one x) { return (one)ILAW_KIT_ON_REGISTERS(sqrt)((native_one)x); }
+#undef ILAW_KIT_ON_REGISTERS
 #else
+ILAW_KIT_INLINE one larger_of(one a, one b) { return a > b ? a : b; }
+ILAW_KIT_INLINE one smaller_of(one a, one b) { return a < b ? a : b; }
+ILAW_KIT_INLINE one root_of(one x) {
   for (int k = 0; k < register_lanes; ++k) x[k] = __builtin_sqrt(x[k]);
   return x;
-#endif
 }
+#endif
 
 }  // namespace detail
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #if defined(ILAW_KIT_DEVICE)
-#include <ilaw/kit/device/plugin.hpp>
+#include <ilaw/kit/device/kernel.hpp>
 #else
 
 #ifndef ILAW_BUILDING_PLUGIN
@@ -27,7 +27,7 @@ template <std::size_t Place, class Law>
 struct functions {
   static ilaw_result ILAW_CALL create(const char* id, const ilaw_setup* setup, ilaw_instance** result,
                                       char* text, std::size_t text_size) {
-    message said(text, text_size);
+    message said(Law::card.id, text, text_size);
     if (!result) return ILAW_INVALID_ARGUMENT;
     const ilaw_kit_walk* best = best_walks();
     return detail::create<Law>(id, setup, best ? best[Place] : nullptr, result, said);

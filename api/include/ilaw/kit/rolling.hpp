@@ -41,7 +41,7 @@ struct rolling_problem {
 };
 // r = -factor slip, with the slip that q leaves.
 template <class V, class Vector>
-struct rolling_answer {
+struct rolling_result {
   Vector slip, q;
   V factor;
   mask_of<V> slides;
@@ -50,10 +50,10 @@ struct rolling_answer {
 // With r = -part (v - k q), part = 1/(h + lambda), q is one projection and |r| falls with lambda >= 0: one
 // root, of x = |v - k q| = most_r/part. resisted: the rolling motion that q opposes, of the one without q.
 template <class V, class Vector, class Resisted>
-ILAW_KIT_INLINE rolling_answer<V, Vector> solve_rolling(const rolling_problem<V, Vector>& p,
+ILAW_KIT_INLINE rolling_result<V, Vector> solve_rolling(const rolling_problem<V, Vector>& p,
                                                         Resisted resisted) {
   const V by_h = 1.0 / p.h, stuck = p.h * p.most_r;  // the largest speed that friction stops
-  rolling_answer<V, Vector> a{};
+  rolling_result<V, Vector> a{};
   V speed = stuck;
   const auto trial = [&](V x) ILAW_KIT_LAMBDA {
     const V part = select(x > stuck, p.most_r / x, by_h), j = p.j - (p.k * part) * p.k;
@@ -84,9 +84,9 @@ ILAW_KIT_INLINE V twisting_moment(V spin, V j_n, V most) {
 // 2 q.(u^- + u)/2 = q.(u + e u^-) + (1 - e) q.u^- <= 0. The part e adds max(0, q.u^-) to the minimum that
 // solve_rolling finds, which stays convex.
 template <class V, class Vector>
-class turned_motion {
+class motion_to_resist {
  public:
-  ILAW_KIT_INLINE explicit turned_motion(Vector before)
+  ILAW_KIT_INLINE explicit motion_to_resist(Vector before)
       : before_(before.tangential_part()),
         down_(before.scaled_tangential_length().down),
         square_(before.scaled_tangential_length().square) {}
@@ -103,7 +103,7 @@ class turned_motion {
 };
 // The same along one axis.
 template <class V>
-ILAW_KIT_INLINE V turned_spin(V spin, V before) {
+ILAW_KIT_INLINE V spin_to_resist(V spin, V before) {
   const mask_of<V> turns = ((spin < 0.0) & (before > 0.0)) | ((spin > 0.0) & (before < 0.0));
   const V sum = spin + before, rest = select(spin > 0.0, positive_part(sum), 0.0 - positive_part(-sum));
   return select(turns, rest, spin);

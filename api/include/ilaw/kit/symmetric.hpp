@@ -137,11 +137,18 @@ struct full {
   ILAW_KIT_INLINE vector<V> solve(vector<V> v) const { return factorise().solve(v); }
 };
 
-// Whether closed forms for H = diag(h_N, h_T, h_T) do not hold, beyond the rounding that turning H to other
-// axes leaves where an entry was zero.
+// Largest | |n|^2 - 1 |, | |t|^2 - 1 | and | n.t | accepted: axes that went through single precision pass.
+inline constexpr double unit_tolerance = 1e-6;
+
+// Whether closed forms for H = diag(h_N, h_T, h_T) do not hold, beyond the error of the axes. To first order
+// in e = unit_tolerance, H = h_T 1 + d m m' with d = h_N - h_T and |m x n| <= e has |n.H t_1| <= e (h_T + 2
+// |d|), |n.H t_2| <= e |d|, |t_1.H t_1 - t_2.H t_2| <= e h_T and t_1.H t_2 = 0 along axes within e, with t_2
+// = n x t_1: in all at most 5 e (h_N + h_T). H in single precision adds 5 * 2^-24 |H|, below e (h_N + h_T)/2.
+// Below it the axes change the impulse as much as the neglected entries do.
 template <class Delassus>
 ILAW_KIT_INLINE auto is_anisotropic(const Delassus& h) {
-  return h.anisotropy() > 0x1p-46 * (h.normal() + h.tangential());
+  constexpr double tolerance = 6.0 * unit_tolerance;
+  return h.anisotropy() > tolerance * (h.normal() + h.tangential());
 }
 
 template <class Delassus>

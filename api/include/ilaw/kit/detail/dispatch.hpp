@@ -5,10 +5,15 @@
 
 #include <ilaw/ilaw.h>
 #include <ilaw/kit/detail/level.hpp>
-#include <ilaw/kit/detail/processor.hpp>
 
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <initializer_list>
+
+#if defined(__x86_64__)
+#include <cpuid.h>
+#endif
 
 // Runs a checked batch of an instance; the pointers lead to types that are the same at every level.
 // found: a tally. An array of them, one per law of the library, is what a level gives to the baseline.
@@ -20,6 +25,47 @@ extern "C" const ilaw_kit_walk* ilaw_kit_walks_v4();
 #endif
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+// Which levels of x86-64 a processor serves, by all that a compiler may use of them. Source: System V ABI,
+// x86-64 supplement, section 3.1.1 (levels); Intel 64 Software Developer's Manual, volume 2, CPUID.
+
+// Results of the instruction CPUID, and the registers that the operating system keeps (XCR0).
+struct processor {
+  std::uint32_t leaf_1_ecx = 0, leaf_7_ebx = 0, extended_ecx = 0, kept = 0;
+};
+
+constexpr std::uint32_t bits(std::initializer_list<int> places) {
+  std::uint32_t mask = 0;
+  for (const int place : places) mask |= std::uint32_t{1} << place;
+  return mask;
+}
+
+// SSE3, SSSE3, FMA, CMPXCHG16B, SSE4.1, SSE4.2, MOVBE, POPCNT, XSAVE, OSXSAVE, AVX, F16C; BMI1, AVX2, BMI2;
+// LAHF, LZCNT; registers of SSE and AVX.
+inline constexpr processor level_v3{bits({0, 9, 12, 13, 19, 20, 22, 23, 26, 27, 28, 29}), bits({3, 5, 8}),
+                                    bits({0, 5}), bits({1, 2})};
+// Besides: AVX512 F, DQ, CD, BW, VL; their masks and registers.
+inline constexpr processor level_v4{level_v3.leaf_1_ecx, level_v3.leaf_7_ebx | bits({16, 17, 28, 30, 31}),
+                                    level_v3.extended_ecx, level_v3.kept | bits({5, 6, 7})};
+
+constexpr bool serves(const processor& p, const processor& level) {
+  return (p.leaf_1_ecx & level.leaf_1_ecx) == level.leaf_1_ecx &&
+         (p.leaf_7_ebx & level.leaf_7_ebx) == level.leaf_7_ebx &&
+         (p.extended_ecx & level.extended_ecx) == level.extended_ecx && (p.kept & level.kept) == level.kept;
+}
+
+inline processor this_processor() {
+  processor p;
+#if defined(__x86_64__)
+  std::uint32_t a = 0, b = 0, c = 0, d = 0;
+  if (__get_cpuid(1, &a, &b, &c, &d)) p.leaf_1_ecx = c;
+  if (__get_cpuid_count(7, 0, &a, &b, &c, &d)) p.leaf_7_ebx = b;
+  if (__get_cpuid(0x80000001U, &a, &b, &c, &d)) p.extended_ecx = c;
+  // XGETBV is there if OSXSAVE is.
+  if (p.leaf_1_ecx & bits({27})) __asm__ volatile("xgetbv" : "=a"(p.kept), "=d"(d) : "c"(0));
+#endif
+  return p;
+}
 
 // The walks of the best level that was compiled, that the processor has and the environment allows; null: the
 // baseline's own.

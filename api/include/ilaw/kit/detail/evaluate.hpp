@@ -129,7 +129,7 @@ const char* wrong_parameters(const instance<Law>& made, const ilaw_batch& batch,
     const std::int64_t at = node * given.node_stride;
     const double value = made.numbers == ILAW_NUMBERS_FLOAT ? double{given.floats[at]} : given.values[at];
     const int place = made.per_node_parameters[k];
-    if (!range_of(Law::parameters[place]).has(value)) return "a per-node parameter is out of range";
+    if (!Law::parameters[place].range().has(value)) return "a per-node parameter is out of range";
     Law::parameters[place].member.set(law, value);
   }
   made.read_node_tables(law, batch.time);

@@ -7,10 +7,6 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// Largest | |n|^2 - 1 | accepted: normals that went through single precision pass.
-inline constexpr double unit_tolerance = 1e-6;
-inline constexpr double unit_component = 0x1.279a74590331cp-1;  // of (1, 1, 1)/sqrt 3, where there is no node
-
 template <class V>
 ILAW_KIT_INLINE mask_of<V> is_unit(axis<V> a) {
   return absolute(dot(a, a) - 1.0) <= unit_tolerance;
@@ -46,16 +42,6 @@ ILAW_KIT_INLINE axis<V> transported_tangent(axis<V> before, axis<V> tangent, axi
   return {inverse * flat.x, inverse * flat.y, inverse * flat.z};
 }
 
-// Spins and moments as nodes have them: the normal component of w, and w x n; and back, by n x (w x n) = w_T.
-template <class V>
-ILAW_KIT_INLINE vector<V> quarter_turned(vector<V> w) {
-  return {w.n, w.t2, 0.0 - w.t1};
-}
-template <class V>
-ILAW_KIT_INLINE vector<V> quarter_turned_back(vector<V> u) {
-  return {u.n, 0.0 - u.t2, u.t1};
-}
-
 // The batch is in the local frame.
 template <class V>
 struct local_frame {
@@ -64,8 +50,6 @@ struct local_frame {
 
   ILAW_KIT_INLINE vector<V> to_local(axis<V> a) const { return {a.x, a.y, a.z}; }
   ILAW_KIT_INLINE axis<V> to_global(vector<V> a) const { return {a.n, a.t1, a.t2}; }
-  ILAW_KIT_INLINE vector<V> spin_to_local(axis<V> w) const { return quarter_turned(to_local(w)); }
-  ILAW_KIT_INLINE axis<V> spin_to_global(vector<V> u) const { return to_global(quarter_turned_back(u)); }
   template <class Delassus>
   ILAW_KIT_INLINE Delassus to_local(Delassus h, int /*dimension*/) const {
     return h;
@@ -87,14 +71,6 @@ struct normal_frame {
   ILAW_KIT_INLINE axis<V> to_global(projected<V> a) const {
     return {a.x + a.n * n.x, a.y + a.n * n.y, a.z + a.n * n.z};
   }
-  ILAW_KIT_INLINE projected<V> spin_to_local(axis<V> w) const {
-    const axis<V> u = cross(w, n);
-    return {dot(n, w), u.x, u.y, u.z};
-  }
-  ILAW_KIT_INLINE axis<V> spin_to_global(projected<V> u) const {
-    const axis<V> w = cross(n, axis<V>{u.x, u.y, u.z});
-    return {w.x + u.n * n.x, w.y + u.n * n.y, w.z + u.n * n.z};
-  }
   template <class Delassus>
   ILAW_KIT_INLINE Delassus to_local(Delassus h, int /*dimension*/) const {
     return h;
@@ -114,8 +90,6 @@ struct axes_frame {
     return {a.n * n.x + a.t1 * t1.x + a.t2 * t2.x, a.n * n.y + a.t1 * t1.y + a.t2 * t2.y,
             a.n * n.z + a.t1 * t1.z + a.t2 * t2.z};
   }
-  ILAW_KIT_INLINE vector<V> spin_to_local(axis<V> w) const { return quarter_turned(to_local(w)); }
-  ILAW_KIT_INLINE axis<V> spin_to_global(vector<V> u) const { return to_global(quarter_turned_back(u)); }
   ILAW_KIT_INLINE transverse<V> to_local(transverse<V> h, int /*dimension*/) const { return h; }
   ILAW_KIT_INLINE transverse_spin<V> to_local(transverse_spin<V> h, int /*dimension*/) const { return h; }
   // B H B^T. In the plane the second tangent is given the entry of the first, lest H pass for anisotropic.
@@ -146,12 +120,31 @@ struct either_frame : axes_frame<V> {
   ILAW_KIT_INLINE axis<V> to_global(vector<V> a) const {
     return is_local ? axis<V>{a.n, a.t1, a.t2} : base::to_global(a);
   }
-  ILAW_KIT_INLINE vector<V> spin_to_local(axis<V> w) const { return quarter_turned(to_local(w)); }
-  ILAW_KIT_INLINE axis<V> spin_to_global(vector<V> u) const { return to_global(quarter_turned_back(u)); }
   template <class Delassus>
   ILAW_KIT_INLINE Delassus to_local(Delassus h, int dimension) const {
     return is_local ? h : base::to_local(h, dimension);
   }
 };
+
+// Spins and moments as nodes have them: the normal component of w, and w x n; and back, by n x (w x n) = w_T.
+template <class Frame, class V>
+ILAW_KIT_INLINE vector<V> spin_to_local(const Frame& frame, axis<V> w) {
+  const vector<V> a = frame.to_local(w);
+  return {a.n, a.t2, 0.0 - a.t1};
+}
+template <class V>
+ILAW_KIT_INLINE projected<V> spin_to_local(const normal_frame<V>& frame, axis<V> w) {
+  const axis<V> u = cross(w, frame.n);
+  return {dot(frame.n, w), u.x, u.y, u.z};
+}
+template <class Frame, class V>
+ILAW_KIT_INLINE axis<V> spin_to_global(const Frame& frame, vector<V> u) {
+  return frame.to_global({u.n, 0.0 - u.t2, u.t1});
+}
+template <class V>
+ILAW_KIT_INLINE axis<V> spin_to_global(const normal_frame<V>& frame, projected<V> u) {
+  const axis<V> w = cross(frame.n, axis<V>{u.x, u.y, u.z});
+  return frame.to_global({u.n, w.x, w.y, w.z});
+}
 
 }  // namespace ilaw::kit::detail

@@ -5,8 +5,8 @@
 #include <ilaw/kit/detail/describe.hpp>
 #include <ilaw/kit/detail/dispatch.hpp>
 #include <ilaw/kit/detail/float_environment.hpp>
-#include <ilaw/kit/detail/forms.hpp>
 #include <ilaw/kit/detail/kernel.hpp>
+#include <ilaw/kit/detail/law_on_packs.hpp>
 #include <ilaw/kit/detail/parameters.hpp>
 #include <ilaw/kit/detail/walk.hpp>
 
@@ -87,54 +87,43 @@ class instance_builder {
   }
 
  private:
-  static constexpr const char* id = Law::card.id;
   using description_type = typename instance<Law>::description_type;
   static constexpr auto count = static_cast<std::size_t>(parameter_count<Law>);
 
   ilaw_result check_setup() {
     const law_card& card = Law::card;
+    const std::uint32_t form = setup_.delassus_form, served = card.delassus_forms;
     if (setup_.dimension < 1 || setup_.dimension > 3 || !(card.dimensions & (1U << setup_.dimension))) {
-      text_.add("law '%s': dimension %u is not served: expected", id, setup_.dimension);
+      text_.refuse(ILAW_UNSUPPORTED, "dimension %u is not served: expected", setup_.dimension);
       for (unsigned d = 1; d <= 3; ++d)
         if (card.dimensions & (1U << d)) text_.add(" %u", d);
       return ILAW_UNSUPPORTED;
     }
-    const std::uint32_t form = setup_.delassus_form;
-    if ((form != ILAW_DELASSUS_SCALAR && form != ILAW_DELASSUS_DIAGONAL && form != ILAW_DELASSUS_FULL &&
-         form != ILAW_DELASSUS_TRANSVERSE && form != ILAW_DELASSUS_TRANSVERSE_SPIN) ||
-        !(card.delassus_forms & form)) {
-      text_.add("law '%s': form %u of H is not served: expected one of%s%s%s%s%s", id, form,
-                card.delassus_forms & ILAW_DELASSUS_SCALAR ? " 1 (scalar)" : "",
-                card.delassus_forms & ILAW_DELASSUS_DIAGONAL ? " 2 (diagonal)" : "",
-                card.delassus_forms & ILAW_DELASSUS_FULL ? " 4 (full)" : "",
-                card.delassus_forms & ILAW_DELASSUS_TRANSVERSE ? " 8 (transverse)" : "",
-                card.delassus_forms & ILAW_DELASSUS_TRANSVERSE_SPIN ? " 16 (transverse_spin)" : "");
-      return ILAW_UNSUPPORTED;
-    }
-    if (form == ILAW_DELASSUS_TRANSVERSE_SPIN && setup_.dimension != 3) {
-      text_.add("law '%s': dimension %u has no spins: expected 3 for form 16 (transverse_spin) of H", id,
-                setup_.dimension);
-      return ILAW_UNSUPPORTED;
-    }
-    if (setup_.frame != ILAW_FRAME_LOCAL && setup_.frame != ILAW_FRAME_GLOBAL) {
-      text_.add("law '%s': frame %u is unknown: expected 1 (local) or 2 (global)", id, setup_.frame);
-      return ILAW_UNSUPPORTED;
-    }
-    if (setup_.numbers != ILAW_NUMBERS_DOUBLE && setup_.numbers != ILAW_NUMBERS_FLOAT) {
-      text_.add("law '%s': numbers %u are unknown: expected 1 (double) or 2 (float)", id, setup_.numbers);
-      return ILAW_UNSUPPORTED;
-    }
-    if (setup_.flags != 0) {
-      text_.add("law '%s': flags 0x%llx are not known: expected 0", id,
-                static_cast<unsigned long long>(setup_.flags));
-      return ILAW_UNSUPPORTED;
-    }
-    if (setup_.has_tangent > 1) {
-      text_.add("law '%s': has_tangent %u is unknown: expected 0 or 1", id, setup_.has_tangent);
-      return ILAW_INVALID_ARGUMENT;
-    }
+    if (__builtin_popcount(form) != 1 || !(served & form))
+      return text_.refuse(ILAW_UNSUPPORTED, "form %u of H is not served: expected one of%s%s%s%s%s", form,
+                          served & ILAW_DELASSUS_SCALAR ? " 1 (scalar)" : "",
+                          served & ILAW_DELASSUS_DIAGONAL ? " 2 (diagonal)" : "",
+                          served & ILAW_DELASSUS_FULL ? " 4 (full)" : "",
+                          served & ILAW_DELASSUS_TRANSVERSE ? " 8 (transverse)" : "",
+                          served & ILAW_DELASSUS_TRANSVERSE_SPIN ? " 16 (transverse_spin)" : "");
+    if (form == ILAW_DELASSUS_TRANSVERSE_SPIN && setup_.dimension != 3)
+      return text_.refuse(ILAW_UNSUPPORTED,
+                          "dimension %u has no spins: expected 3 for form 16 (transverse_spin) of H",
+                          setup_.dimension);
+    if (setup_.frame != ILAW_FRAME_LOCAL && setup_.frame != ILAW_FRAME_GLOBAL)
+      return text_.refuse(ILAW_UNSUPPORTED, "frame %u is unknown: expected 1 (local) or 2 (global)",
+                          setup_.frame);
+    if (setup_.numbers != ILAW_NUMBERS_DOUBLE && setup_.numbers != ILAW_NUMBERS_FLOAT)
+      return text_.refuse(ILAW_UNSUPPORTED, "numbers %u are unknown: expected 1 (double) or 2 (float)",
+                          setup_.numbers);
+    if (setup_.flags != 0)
+      return text_.refuse(ILAW_UNSUPPORTED, "flags 0x%llx are not known: expected 0",
+                          static_cast<unsigned long long>(setup_.flags));
+    if (setup_.has_tangent > 1)
+      return text_.refuse(ILAW_INVALID_ARGUMENT, "has_tangent %u is unknown: expected 0 or 1",
+                          setup_.has_tangent);
     made_.dimension = setup_.dimension;
-    made_.delassus_form = setup_.delassus_form;
+    made_.delassus_form = form;
     made_.frame = setup_.frame;
     made_.numbers = setup_.numbers;
     made_.has_tangent = setup_.has_tangent;
@@ -144,55 +133,53 @@ class instance_builder {
   ilaw_result read_arguments() {
     for (std::size_t k = 0; k < count; ++k)
       Law::parameters[k].member.set(made_.law, Law::parameters[k].default_value, made_.tables[k]);
-    if (setup_.argument_count > 0 && !setup_.arguments) {
-      text_.add("law '%s': arguments is null, expected %u pointers", id, setup_.argument_count);
-      return ILAW_INVALID_ARGUMENT;
-    }
+    if (setup_.argument_count > 0 && !setup_.arguments)
+      return text_.refuse(ILAW_INVALID_ARGUMENT, "arguments is null, expected %u pointers",
+                          setup_.argument_count);
     for (std::uint32_t k = 0; k < setup_.argument_count; ++k) {
       const ilaw_argument* given = setup_.arguments[k];
       const ilaw_argument a = sized::is_complete(given) ? sized::read(given) : ilaw_argument{};
-      if (!a.name) {
-        text_.add("law '%s': argument %u is null, has no name or a struct_size not from %u to %u", id, k,
-                  sized::least<ilaw_argument>, sized::most);
-        return ILAW_INVALID_ARGUMENT;
-      }
+      if (!a.name)
+        return text_.refuse(ILAW_INVALID_ARGUMENT,
+                            "argument %u is null, has no name or a struct_size not from %u to %u", k,
+                            sized::least<ilaw_argument>, sized::most);
       if (const ilaw_result code = read_argument(a); code != ILAW_OK) return code;
     }
     return ILAW_OK;
   }
 
   ilaw_result read_argument(const ilaw_argument& a) {
+    constexpr ilaw_result wrong = ILAW_INVALID_PARAMETER;
     std::size_t i = 0;
     while (i < count && std::strcmp(Law::parameters[i].name, a.name) != 0) ++i;
     if (i == count) {
-      text_.add("law '%s': unknown parameter '%s': expected one of ", id, a.name);
+      text_.refuse(wrong, "unknown parameter '%s': expected one of ", a.name);
       for (std::size_t k = 0; k < count; ++k) text_.add("%s%s", k ? ", " : "", Law::parameters[k].name);
-      return ILAW_INVALID_PARAMETER;
+      return wrong;
     }
-    if (given_[i]) {
-      text_.add("law '%s': parameter '%s' is given twice", id, a.name);
-      return ILAW_INVALID_PARAMETER;
-    }
+    if (given_[i]) return text_.refuse(wrong, "parameter '%s' is given twice", a.name);
     given_[i] = true;
-    if (Law::parameters[i].needs_spins && !made_.has_spins()) {
-      text_.add("law '%s': parameter '%s' needs spins, form %u of H has none: expected 16 (transverse_spin)",
-                id, a.name, made_.delassus_form);
-      return ILAW_INVALID_PARAMETER;
-    }
+    if (Law::parameters[i].needs_spins && !made_.has_spins())
+      return text_.refuse(wrong,
+                          "parameter '%s' needs spins, form %u of H has none: expected 16 (transverse_spin)",
+                          a.name, made_.delassus_form);
     const ilaw_parameter& p = description_type::parameters[i];
     if (a.kind == ILAW_VALUE_TABLE && p.axis_count > 0) return keep_table(p, i, a);
-    if (a.kind == ILAW_VALUE_PER_NODE && (p.flags & ILAW_PARAMETER_ALLOWS_PER_NODE))
-      return keep_per_node(p, i);
+    if (a.kind == ILAW_VALUE_PER_NODE && (p.flags & ILAW_PARAMETER_ALLOWS_PER_NODE)) {
+      made_.per_node_parameters[made_.per_node_count] = static_cast<int>(i);
+      made_.per_node_names[made_.per_node_count++] = p.name;
+      return ILAW_OK;
+    }
     double value = 0.0;
-    const ilaw_result code = p.kind == ILAW_PARAMETER_CHOICE ? read_choice(id, p, a, value, text_)
-                                                             : read_number(id, p, a, value, text_);
+    const auto read = p.kind == ILAW_PARAMETER_CHOICE ? read_choice : read_number;
+    const ilaw_result code = read(p, a, value, text_);
     Law::parameters[i].member.set(made_.law, value, made_.tables[i]);
     return code;
   }
 
   ilaw_result keep_table(const ilaw_parameter& p, std::size_t place, const ilaw_argument& a) {
     table& made = made_.tables[place];
-    if (const ilaw_result code = read_table(id, p, a, made, text_); code != ILAW_OK) return code;
+    if (const ilaw_result code = read_table(p, a, made, text_); code != ILAW_OK) return code;
     for (int i = 0; i < made.axis_count; ++i) {
       const char* axis = p.axes[made.named_axis[i]];
       made.source[i] = std::strcmp(axis, "time") == 0 ? table::time : table::computed;
@@ -211,13 +198,12 @@ class instance_builder {
         const int field = made_.tables[k].source[a];
         if (field < 0) continue;
         const auto f = static_cast<std::size_t>(field);
-        if (!given_[f] || (made_.tables[f].axis_count > 0 && !made_.tables[f].is_over_time_alone())) {
-          text_.add(
-              "law '%s': parameter '%s' is a table over '%s': expected a value, a value per node or a table over "
+        if (!given_[f] || (made_.tables[f].axis_count > 0 && !made_.tables[f].is_over_time_alone()))
+          return text_.refuse(
+              ILAW_INVALID_PARAMETER,
+              "parameter '%s' is a table over '%s': expected a value, a value per node or a table over "
               "time for that",
-              id, Law::parameters[k].name, Law::parameters[f].name);
-          return ILAW_INVALID_PARAMETER;
-        }
+              Law::parameters[k].name, Law::parameters[f].name);
         for (std::uint32_t n = 0; n < made_.per_node_count; ++n)
           if (made_.per_node_parameters[n] == field && !Law::parameters[k].member.is_grid())
             made_.tables[k].per_node = true;
@@ -226,17 +212,11 @@ class instance_builder {
     return ILAW_OK;
   }
 
-  ilaw_result keep_per_node(const ilaw_parameter& p, std::size_t place) {
-    made_.per_node_parameters[made_.per_node_count] = static_cast<int>(place);
-    made_.per_node_names[made_.per_node_count++] = p.name;
-    return ILAW_OK;
-  }
-
   ilaw_result require_arguments() {
     for (std::size_t i = 0; i < count; ++i)
       if (Law::parameters[i].required && !given_[i]) {
         const ilaw_parameter& p = description_type::parameters[i];
-        text_.add("law '%s': parameter '%s' is missing: expected ", id, p.name);
+        text_.refuse(ILAW_INVALID_PARAMETER, "parameter '%s' is missing: expected ", p.name);
         if (p.kind == ILAW_PARAMETER_CHOICE) {
           text_.add("one of ");
           add_choices(text_, p);
@@ -251,18 +231,15 @@ class instance_builder {
 
   ilaw_result check_together() {
     if constexpr (requires { made_.law.inputs(); })
-      if (const std::uint32_t extra = made_.law.inputs() & ~Law::card.inputs) {
-        text_.add("law '%s': reads inputs 0x%x that its card does not name", id, extra);
-        return ILAW_UNSUPPORTED;
-      }
+      if (const std::uint32_t extra = made_.law.inputs() & ~Law::card.inputs)
+        return text_.refuse(ILAW_UNSUPPORTED, "reads inputs 0x%x that its card does not name", extra);
     if (const ilaw_result code = check_conflicts(); code != ILAW_OK) return code;
     if constexpr (requires { made_.law.tells_tangents_apart(); })
       if (with_unknowns().tells_tangents_apart() && setup_.frame == ILAW_FRAME_GLOBAL &&
-          setup_.dimension == 3 && !setup_.has_tangent) {
-        text_.add(
-            "law '%s': these parameters tell the two tangential axes apart: expected a tangent per node", id);
-        return ILAW_UNSUPPORTED;
-      }
+          setup_.dimension == 3 && !setup_.has_tangent)
+        return text_.refuse(
+            ILAW_UNSUPPORTED,
+            "these parameters tell the two tangential axes apart: expected a tangent per node");
     return ILAW_OK;
   }
 
@@ -295,7 +272,7 @@ class instance_builder {
   ilaw_result check_conflict(const Law& law, const double* time) {
     if constexpr (requires { law.conflict(); })
       if (const char* conflict = law.conflict()) {
-        text_.add("law '%s': %s", id, conflict);
+        text_.refuse(ILAW_INVALID_PARAMETER, "%s", conflict);
         add_values_named_in(conflict, law);
         if (time) {
           text_.add(" at time ");
@@ -398,15 +375,11 @@ template <class Law>
 ilaw_result create(const char* name, const ilaw_setup* setup, ilaw_kit_walk walk, ilaw_instance** result,
                    message& text) {
   *result = nullptr;
-  if (!name || std::strcmp(name, Law::card.id) != 0) {
-    text.add("law '%s': create was called for '%s'", Law::card.id, name ? name : "null");
-    return ILAW_INVALID_ARGUMENT;
-  }
-  if (!sized::is_complete(setup)) {
-    text.add("law '%s': setup is null or its struct_size not from %u to %u", Law::card.id,
-             sized::least<ilaw_setup>, sized::most);
-    return ILAW_INVALID_ARGUMENT;
-  }
+  if (!name || std::strcmp(name, Law::card.id) != 0)
+    return text.refuse(ILAW_INVALID_ARGUMENT, "create was called for '%s'", name ? name : "null");
+  if (!sized::is_complete(setup))
+    return text.refuse(ILAW_INVALID_ARGUMENT, "setup is null or its struct_size not from %u to %u",
+                       sized::least<ilaw_setup>, sized::most);
   const float_environment own;
   void* memory = std::malloc(sizeof(instance<Law>));
   if (!memory) return ILAW_OUT_OF_MEMORY;

@@ -10,9 +10,7 @@
 
 #include <ilaw/kit/detail/law_on_packs.hpp>
 #include <ilaw/kit/detail/load_node.hpp>
-#include <ilaw/kit/detail/node_state.hpp>
-#include <ilaw/kit/detail/stable_step.hpp>
-#include <ilaw/kit/detail/store_heat.hpp>
+#include <ilaw/kit/detail/step_outputs.hpp>
 #include <ilaw/kit/node.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
@@ -99,7 +97,7 @@ struct kernel {
     std::conditional_t<spins, axis<V>, spinless> free_spin;
     spin_type spin_free{}, spin_previous{};
     if constexpr (spins) {
-      const auto turned_spin = [&](axis<V> a) ILAW_KIT_LAMBDA { return frame.spin_to_local(a); };
+      const auto turned_spin = [&](axis<V> a) ILAW_KIT_LAMBDA { return spin_to_local(frame, a); };
       load_vector(free_spin, b.spin_free, i, numbers);
       spin_free = turned_spin(free_spin);
       load_previous(spin_previous, known, b, b.spin_previous, turned_spin, i, numbers);
@@ -279,7 +277,8 @@ struct kernel {
     if constexpr (gives_heat<Law>)
       if (b.has_amounts)
         store_heat(b, i, own_amount_count<Law>, zero_unless(!(status == status::free), parts[0]),
-                   zero_unless(known, n.impulse), mean, law.heat_partition, law.wear_coefficient);
+                   zero_unless(known, n.impulse), mean, law.heat_partition, n.rubbing * law.wear_coefficient,
+                   n.rubbing == 1.0);
     if (b.energy.at) store_numbers(parts, b.energy, i);
   }
 
@@ -350,7 +349,7 @@ struct kernel {
   template <class Array>
   ILAW_KIT_INLINE static void store_spin(const frame_type& frame, vector_type own, axis<V> bad,
                                          const Array& to, std::int64_t i, mask accepted) {
-    axis<V> out = frame.spin_to_global(own);
+    axis<V> out = spin_to_global(frame, own);
     if constexpr (careful) out = select(accepted, out, bad);
     store_vector(out, to, i);
   }

@@ -1,11 +1,43 @@
-// law_on_packs.hpp - a law whose members are packs: its parameters, the same in all lanes or by node.
+// law_on_packs.hpp - a law whose members are packs: which nodes it serves, and its parameters, the same in
+// all lanes or by node.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/parameter_range.hpp>
 #include <ilaw/kit/detail/view.hpp>
+#include <ilaw/kit/state.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+// Whether kernels may work from the normal alone: no tangent named, and no vector remembered, which would
+// need tangents to be written in.
+template <class Law>
+inline constexpr bool needs_no_tangents =
+    Law::card.is_isotropic && !has_history<Law> && !has_vector_state<Law>();
+
+template <class Law>
+inline constexpr bool serves_transverse = (Law::card.delassus_forms &
+                                           (ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE)) != 0;
+template <class Law>
+inline constexpr bool serves_spins = (Law::card.delassus_forms & with_spins) != 0;
+template <class Law>
+inline constexpr bool serves_full = (Law::card.delassus_forms &
+                                     (ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL)) != 0;
+
+template <class Law, class Node>
+concept can_ask = requires(const Law& law, Node& n, typename Law::problem& p) {
+  law.ask(n, p);
+};
+
+template <class Law, class Node>
+concept can_choose = requires(const Law& law, Node& n) {
+  law.step(n);
+}
+&&(
+    requires(const Law& law) { law.asks(); } || requires(const Law& law) { law.asks(true); });
+
+// Free histories are read and written node by node.
+template <class Law>
+inline constexpr bool has_free_history = has_history<Law> && !has_window<Law>;
 
 template <class Law, class V>
 struct law_on;
@@ -30,11 +62,6 @@ ILAW_KIT_INLINE law_on_t<Law, V> broadcast(const Law& law) {
     return law;
   else
     return broadcast<V>(law, std::make_index_sequence<static_cast<std::size_t>(parameter_count<Law>)>{});
-}
-
-template <class Law>
-constexpr parameter_range range_of(const parameter<Law>& p) {
-  return parameter_range(p.minimum, p.minimum_excluded, p.maximum, p.infinity_allowed);
 }
 
 // Tables over fields, lane by lane.
@@ -66,7 +93,7 @@ template <class Wide, class Law, class Number>
   for (int k = 0; k < parameter_count<Law>; ++k)
     if (Wide::parameters[k].member.may_vary() && b.parameters[k]) {
       const V given = load<V>(b.parameters[k] + i);
-      good = good & range_of(Wide::parameters[k]).has(given);
+      good = good & Wide::parameters[k].range().has(given);
       Wide::parameters[k].member.varying_in(own) = given;
     }
   if (b.tables) look_up(own, b);

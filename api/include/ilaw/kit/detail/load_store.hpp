@@ -9,7 +9,10 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // ---- rows of two, three, four and six numbers to columns and back, in registers
 
+// A register as a host's array has it: floats are turned while they are narrow.
 using one_floats = float __attribute__((vector_size(4 * register_lanes)));
+template <class Number>
+using one_of = std::conditional_t<std::is_same_v<std::remove_const_t<Number>, float>, one_floats, one>;
 
 // Lanes of rows of so many numbers: which of three registers has the wanted numbers of a lane.
 template <int Numbers, int Group>
@@ -56,23 +59,23 @@ ILAW_KIT_INLINE One row_of_three(One a, One b, One c, std::integer_sequence<int,
 }
 
 // Every second number of two registers side by side, from the first or second on; and the reverse.
-template <int Column, int... K>
-ILAW_KIT_INLINE one every_second(one a, one b, std::integer_sequence<int, K...>) {
+template <int Column, class One, int... K>
+ILAW_KIT_INLINE One every_second(One a, One b, std::integer_sequence<int, K...>) {
   return __builtin_shufflevector(a, b, 2 * K + Column...);
 }
-template <int Half, int... K>
-ILAW_KIT_INLINE one zipped(one a, one b, std::integer_sequence<int, K...>) {
+template <int Half, class One, int... K>
+ILAW_KIT_INLINE One zipped(One a, One b, std::integer_sequence<int, K...>) {
   return __builtin_shufflevector(a, b, (Half * register_lanes / 2 + K / 2 + K % 2 * register_lanes)...);
 }
 
 // Rows of six: pairs as rows of three, then each register of pairs to its columns.
-template <int Group, int... K>
-ILAW_KIT_INLINE one pairs_of_three(one a, one b, one c, std::integer_sequence<int, K...>) {
-  const one two = __builtin_shufflevector(a, b, (holder_of<6, Group>(K) == 1 ? K + register_lanes : K)...);
+template <int Group, class One, int... K>
+ILAW_KIT_INLINE One pairs_of_three(One a, One b, One c, std::integer_sequence<int, K...>) {
+  const One two = __builtin_shufflevector(a, b, (holder_of<6, Group>(K) == 1 ? K + register_lanes : K)...);
   return __builtin_shufflevector(two, c, (holder_of<6, Group>(K) == 2 ? K + register_lanes : K)...);
 }
-template <int Column, int... K>
-ILAW_KIT_INLINE one column_of_six(one low, one high, std::integer_sequence<int, K...>) {
+template <int Column, class One, int... K>
+ILAW_KIT_INLINE One column_of_six(One low, One high, std::integer_sequence<int, K...>) {
   constexpr int half = register_lanes / 2;
   return __builtin_shufflevector(low, high,
                                  (K / half * register_lanes + (6 * (K % half) + Column) % register_lanes)...);
@@ -80,22 +83,25 @@ ILAW_KIT_INLINE one column_of_six(one low, one high, std::integer_sequence<int, 
 
 // ---- registers in memory
 
-ILAW_KIT_INLINE one one_at(const double* p) {
-  one v;
+ILAW_KIT_INLINE one widened(one v) { return v; }
+ILAW_KIT_INLINE one widened(one_floats v) { return __builtin_convertvector(v, one); }
+template <class Number>
+ILAW_KIT_INLINE one_of<Number> narrowed(one v) {
+  if constexpr (std::is_same_v<Number, float>)
+    return __builtin_convertvector(v, one_floats);
+  else
+    return v;
+}
+template <class Number>
+ILAW_KIT_INLINE one_of<Number> one_at(const Number* p) {
+  one_of<Number> v;
   __builtin_memcpy(&v, p, sizeof v);
-  ILAW_KIT_IN_REGISTER(v);
+  if constexpr (std::is_same_v<Number, double>) ILAW_KIT_IN_REGISTER(v);
   return v;
 }
-ILAW_KIT_INLINE void put_one(one v, double* p) { __builtin_memcpy(p, &v, sizeof v); }
-ILAW_KIT_INLINE one_floats floats_at(const float* p) {
-  one_floats v;
-  __builtin_memcpy(&v, p, sizeof v);
-  return v;
-}
-ILAW_KIT_INLINE one one_at(const float* p) { return __builtin_convertvector(floats_at(p), one); }
-ILAW_KIT_INLINE void put_one(one v, float* p) {
-  const one_floats f = __builtin_convertvector(v, one_floats);
-  __builtin_memcpy(p, &f, sizeof f);
+template <class One>
+ILAW_KIT_INLINE void put_one(One v, void* p) {
+  __builtin_memcpy(p, &v, sizeof v);
 }
 
 // Whole numbers 0..255 as bytes.
@@ -140,7 +146,7 @@ ILAW_KIT_INLINE V load(const Number* p) {
   if constexpr (lanes_of<V> == 1)
     return static_cast<double>(*p);
   else
-    return V::each([&](int r) ILAW_KIT_LAMBDA { return one_at(p + r * register_lanes); });
+    return V::each([&](int r) ILAW_KIT_LAMBDA { return widened(one_at(p + r * register_lanes)); });
 }
 template <class V, class Number>
 ILAW_KIT_INLINE void store(V a, Number* p) {
@@ -148,7 +154,8 @@ ILAW_KIT_INLINE void store(V a, Number* p) {
     *p = static_cast<Number>(a);
   else {
 #pragma GCC unroll 4
-    for (int r = 0; r < V::size / register_lanes; ++r) put_one(a.v[r], p + r * register_lanes);
+    for (int r = 0; r < V::size / register_lanes; ++r)
+      put_one(narrowed<Number>(a.v[r]), p + r * register_lanes);
   }
 }
 template <class V>
@@ -158,6 +165,61 @@ ILAW_KIT_INLINE void store_bytes(V a, std::uint8_t* p) {
   else {
 #pragma GCC unroll 4
     for (int r = 0; r < V::size / register_lanes; ++r) put_bytes(a.v[r], p + r * register_lanes);
+  }
+}
+
+// Registers of rows of N numbers, N of 2, 3, 4 and 6, to those of columns.
+template <int N, class One>
+ILAW_KIT_INLINE void to_columns(const One (&in)[N], One (&out)[N]) {
+  constexpr auto all = each_lane;
+  if constexpr (N == 2) {
+    out[0] = every_second<0>(in[0], in[1], all);
+    out[1] = every_second<1>(in[0], in[1], all);
+  } else if constexpr (N == 3) {
+    out[0] = column_of_three<0>(in[0], in[1], in[2], all);
+    out[1] = column_of_three<1>(in[0], in[1], in[2], all);
+    out[2] = column_of_three<2>(in[0], in[1], in[2], all);
+  } else if constexpr (N == 4) {
+    const One a = every_second<0>(in[0], in[1], all), b = every_second<1>(in[0], in[1], all);
+    const One c = every_second<0>(in[2], in[3], all), d = every_second<1>(in[2], in[3], all);
+    out[0] = every_second<0>(a, c, all);
+    out[1] = every_second<0>(b, d, all);
+    out[2] = every_second<1>(a, c, all);
+    out[3] = every_second<1>(b, d, all);
+  } else {
+    const One p0 = pairs_of_three<0>(in[0], in[1], in[2], all),
+              q0 = pairs_of_three<0>(in[3], in[4], in[5], all);
+    const One p1 = pairs_of_three<1>(in[0], in[1], in[2], all),
+              q1 = pairs_of_three<1>(in[3], in[4], in[5], all);
+    const One p2 = pairs_of_three<2>(in[0], in[1], in[2], all),
+              q2 = pairs_of_three<2>(in[3], in[4], in[5], all);
+    out[0] = column_of_six<0>(p0, q0, all);
+    out[1] = column_of_six<1>(p0, q0, all);
+    out[2] = column_of_six<2>(p1, q1, all);
+    out[3] = column_of_six<3>(p1, q1, all);
+    out[4] = column_of_six<4>(p2, q2, all);
+    out[5] = column_of_six<5>(p2, q2, all);
+  }
+}
+// And back, N of 2, 3 and 4.
+template <int N, class One>
+ILAW_KIT_INLINE void to_rows(const One (&in)[N], One (&out)[N]) {
+  constexpr auto all = each_lane;
+  if constexpr (N == 2) {
+    out[0] = zipped<0>(in[0], in[1], all);
+    out[1] = zipped<1>(in[0], in[1], all);
+  } else if constexpr (N == 3) {
+    out[0] = row_of_three<0>(in[0], in[1], in[2], all);
+    out[1] = row_of_three<1>(in[0], in[1], in[2], all);
+    out[2] = row_of_three<2>(in[0], in[1], in[2], all);
+  } else {
+    static_assert(N == 4);
+    const One e = zipped<0>(in[0], in[2], all), f = zipped<0>(in[1], in[3], all);
+    const One g = zipped<1>(in[0], in[2], all), h = zipped<1>(in[1], in[3], all);
+    out[0] = zipped<0>(e, f, all);
+    out[1] = zipped<1>(e, f, all);
+    out[2] = zipped<0>(g, h, all);
+    out[3] = zipped<1>(g, h, all);
   }
 }
 
@@ -174,55 +236,19 @@ ILAW_KIT_INLINE void load_rows(V (&to)[N], const Number* p, V& found) {
 #pragma GCC unroll 4
     for (int r = 0; r < V::size / register_lanes; ++r) {
       const Number* const q = p + N * register_lanes * r;
-      one in[N];
+      one_of<Number> in[N], out[N];
 #pragma GCC unroll 8
       for (int c = 0; c < N; ++c) {
         in[c] = one_at(q + c * register_lanes);
-        found.v[r] = found.v[r] * in[c];
+        if constexpr (std::is_same_v<Number, double>) found.v[r] = found.v[r] * in[c];
       }
-      if constexpr (N == 2) {
-        to[0].v[r] = every_second<0>(in[0], in[1], each_lane);
-        to[1].v[r] = every_second<1>(in[0], in[1], each_lane);
-      } else if constexpr (N == 3) {
-        to[0].v[r] = column_of_three<0>(in[0], in[1], in[2], each_lane);
-        to[1].v[r] = column_of_three<1>(in[0], in[1], in[2], each_lane);
-        to[2].v[r] = column_of_three<2>(in[0], in[1], in[2], each_lane);
-      } else if constexpr (N == 4) {
-        const one a = every_second<0>(in[0], in[1], each_lane), b = every_second<1>(in[0], in[1], each_lane);
-        const one c = every_second<0>(in[2], in[3], each_lane), d = every_second<1>(in[2], in[3], each_lane);
-        to[0].v[r] = every_second<0>(a, c, each_lane);
-        to[1].v[r] = every_second<0>(b, d, each_lane);
-        to[2].v[r] = every_second<1>(a, c, each_lane);
-        to[3].v[r] = every_second<1>(b, d, each_lane);
-      } else {
-        const one p0 = pairs_of_three<0>(in[0], in[1], in[2], each_lane),
-                  q0 = pairs_of_three<0>(in[3], in[4], in[5], each_lane);
-        const one p1 = pairs_of_three<1>(in[0], in[1], in[2], each_lane),
-                  q1 = pairs_of_three<1>(in[3], in[4], in[5], each_lane);
-        const one p2 = pairs_of_three<2>(in[0], in[1], in[2], each_lane),
-                  q2 = pairs_of_three<2>(in[3], in[4], in[5], each_lane);
-        to[0].v[r] = column_of_six<0>(p0, q0, each_lane);
-        to[1].v[r] = column_of_six<1>(p0, q0, each_lane);
-        to[2].v[r] = column_of_six<2>(p1, q1, each_lane);
-        to[3].v[r] = column_of_six<3>(p1, q1, each_lane);
-        to[4].v[r] = column_of_six<4>(p2, q2, each_lane);
-        to[5].v[r] = column_of_six<5>(p2, q2, each_lane);
+      to_columns(in, out);
+#pragma GCC unroll 8
+      for (int c = 0; c < N; ++c) {
+        to[c].v[r] = widened(out[c]);
+        if constexpr (std::is_same_v<Number, float>) found.v[r] = found.v[r] * to[c].v[r];
       }
     }
-  }
-}
-// Floats are turned while they are narrow.
-template <class V>
-ILAW_KIT_INLINE void load_rows(V (&to)[3], const float* p, V& found) requires(lanes_of<V> > 1) {
-#pragma GCC unroll 4
-  for (int r = 0; r < V::size / register_lanes; ++r) {
-    const float* const q = p + 3 * register_lanes * r;
-    const one_floats a = floats_at(q), b = floats_at(q + register_lanes),
-                     c = floats_at(q + 2 * register_lanes);
-    to[0].v[r] = __builtin_convertvector(column_of_three<0>(a, b, c, each_lane), one);
-    to[1].v[r] = __builtin_convertvector(column_of_three<1>(a, b, c, each_lane), one);
-    to[2].v[r] = __builtin_convertvector(column_of_three<2>(a, b, c, each_lane), one);
-    found.v[r] = found.v[r] * to[0].v[r] * to[1].v[r] * to[2].v[r];
   }
 }
 template <int N, class V, class Number>
@@ -232,43 +258,14 @@ ILAW_KIT_INLINE void store_rows(const V (&a)[N], Number* p) {
   } else {
 #pragma GCC unroll 4
     for (int r = 0; r < V::size / register_lanes; ++r) {
-      one out[N];
-      if constexpr (N == 2) {
-        out[0] = zipped<0>(a[0].v[r], a[1].v[r], each_lane);
-        out[1] = zipped<1>(a[0].v[r], a[1].v[r], each_lane);
-      } else if constexpr (N == 3) {
-        out[0] = row_of_three<0>(a[0].v[r], a[1].v[r], a[2].v[r], each_lane);
-        out[1] = row_of_three<1>(a[0].v[r], a[1].v[r], a[2].v[r], each_lane);
-        out[2] = row_of_three<2>(a[0].v[r], a[1].v[r], a[2].v[r], each_lane);
-      } else {
-        static_assert(N == 4);
-        const one e = zipped<0>(a[0].v[r], a[2].v[r], each_lane),
-                  f = zipped<0>(a[1].v[r], a[3].v[r], each_lane);
-        const one g = zipped<1>(a[0].v[r], a[2].v[r], each_lane),
-                  h = zipped<1>(a[1].v[r], a[3].v[r], each_lane);
-        out[0] = zipped<0>(e, f, each_lane);
-        out[1] = zipped<1>(e, f, each_lane);
-        out[2] = zipped<0>(g, h, each_lane);
-        out[3] = zipped<1>(g, h, each_lane);
-      }
+      one_of<Number> in[N], out[N];
+#pragma GCC unroll 8
+      for (int c = 0; c < N; ++c) in[c] = narrowed<Number>(a[c].v[r]);
+      to_rows(in, out);
       Number* const q = p + N * register_lanes * r;
 #pragma GCC unroll 8
       for (int c = 0; c < N; ++c) put_one(out[c], q + c * register_lanes);
     }
-  }
-}
-template <class V>
-ILAW_KIT_INLINE void store_rows(const V (&a)[3], float* p) requires(lanes_of<V> > 1) {
-#pragma GCC unroll 4
-  for (int r = 0; r < V::size / register_lanes; ++r) {
-    const auto narrow = [&](int c) ILAW_KIT_LAMBDA { return __builtin_convertvector(a[c].v[r], one_floats); };
-    const one_floats u = narrow(0), v = narrow(1), w = narrow(2);
-    const one_floats x = row_of_three<0>(u, v, w, each_lane), y = row_of_three<1>(u, v, w, each_lane),
-                     z = row_of_three<2>(u, v, w, each_lane);
-    float* const q = p + 3 * register_lanes * r;
-    __builtin_memcpy(q, &x, sizeof x);
-    __builtin_memcpy(q + register_lanes, &y, sizeof y);
-    __builtin_memcpy(q + 2 * register_lanes, &z, sizeof z);
   }
 }
 

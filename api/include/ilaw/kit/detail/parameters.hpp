@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/parameter_range.hpp>
 #include <ilaw/kit/law.hpp>
 #include <ilaw/sized.hpp>
 
@@ -13,23 +12,36 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// One line for the caller of create; text that does not fit is cut.
+// One line for the caller of create, "law '...': ...", why it fails; text that does not fit is cut.
 class message {
  public:
-  message(char* text, std::size_t size) : text_(text), size_(text ? size : 0) {
+  message(const char* law, char* text, std::size_t size) : law_(law), text_(text), size_(text ? size : 0) {
     if (size_ > 0) text_[0] = '\0';
   }
 
-  [[gnu::format(printf, 2, 3)]] void add(const char* format, ...) {
-    if (used_ + 1 >= size_) return;
+  [[gnu::format(printf, 3, 4)]] ilaw_result refuse(ilaw_result code, const char* format, ...) {
+    add("law '%s': ", law_);
     va_list arguments;
     va_start(arguments, format);
-    const int length = std::vsnprintf(text_ + used_, size_ - used_, format, arguments);
+    write(format, arguments);
     va_end(arguments);
-    if (length > 0) used_ += static_cast<std::size_t>(length);
+    return code;
+  }
+  [[gnu::format(printf, 2, 3)]] void add(const char* format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    write(format, arguments);
+    va_end(arguments);
   }
 
  private:
+  [[gnu::format(printf, 2, 0)]] void write(const char* format, va_list arguments) {
+    if (used_ + 1 >= size_) return;
+    const int length = std::vsnprintf(text_ + used_, size_ - used_, format, arguments);
+    if (length > 0) used_ += static_cast<std::size_t>(length);
+  }
+
+  const char* law_;
   char* text_;
   std::size_t size_, used_ = 0;
 };
@@ -71,26 +83,26 @@ inline void add_value(message& text, const ilaw_parameter& p, double value) {
 }
 
 // Checks one number against the range of its parameter.
-inline ilaw_result check_number(const char* law, const ilaw_parameter& p, double value, message& text) {
+inline ilaw_result check_number(const ilaw_parameter& p, double value, message& text) {
   const bool whole = p.kind != ILAW_PARAMETER_COUNT || value == __builtin_floor(value);
   if (in_range(p, value) && whole) return ILAW_OK;
-  text.add("law '%s': parameter '%s' = ", law, p.name);
+  const ilaw_result code = text.refuse(ILAW_INVALID_PARAMETER, "parameter '%s' = ", p.name);
   add_number(text, value);
   text.add(" is not allowed: expected a %snumber in ", p.kind == ILAW_PARAMETER_COUNT ? "whole " : "");
   add_range(text, p);
-  return ILAW_INVALID_PARAMETER;
+  return code;
 }
 
-inline ilaw_result read_choice(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
-                               double& value, message& text) {
-  if (a.kind == ILAW_VALUE_TEXT && a.text)
-    for (std::uint32_t i = 0; i < p.choice_count; ++i)
-      if (std::strcmp(p.choices[i], a.text) == 0) {
-        value = i;
-        return ILAW_OK;
-      }
-  text.add("law '%s': parameter '%s' = ", law, p.name);
-  if (a.kind == ILAW_VALUE_TEXT && a.text)
+inline ilaw_result read_choice(const ilaw_parameter& p, const ilaw_argument& a, double& value,
+                               message& text) {
+  const bool is_text = a.kind == ILAW_VALUE_TEXT && a.text;
+  for (std::uint32_t i = 0; is_text && i < p.choice_count; ++i)
+    if (std::strcmp(p.choices[i], a.text) == 0) {
+      value = i;
+      return ILAW_OK;
+    }
+  const ilaw_result code = text.refuse(ILAW_INVALID_PARAMETER, "parameter '%s' = ", p.name);
+  if (is_text)
     text.add("\"%s\"", a.text);
   else if (a.kind == ILAW_VALUE_NUMBER)
     add_number(text, a.number);
@@ -98,32 +110,58 @@ inline ilaw_result read_choice(const char* law, const ilaw_parameter& p, const i
     text.add("a table or array");
   text.add(" is not allowed: expected one of ");
   add_choices(text, p);
-  return ILAW_INVALID_PARAMETER;
+  return code;
 }
 
-inline ilaw_result read_number(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
-                               double& value, message& text) {
+inline ilaw_result read_number(const ilaw_parameter& p, const ilaw_argument& a, double& value,
+                               message& text) {
   if (a.kind == ILAW_VALUE_NUMBER) {
     value = a.number;
-    return check_number(law, p, value, text);
+    return check_number(p, value, text);
   }
   const char* given = a.kind == ILAW_VALUE_TEXT       ? "a text"
                       : a.kind == ILAW_VALUE_TABLE    ? "a table"
                       : a.kind == ILAW_VALUE_PER_NODE ? "a value per node"
                                                       : "a value of unknown kind";
-  text.add("law '%s': parameter '%s' was given as %s", law, p.name, given);
+  const ilaw_result code =
+      text.refuse(ILAW_INVALID_PARAMETER, "parameter '%s' was given as %s", p.name, given);
   if (a.kind == ILAW_VALUE_TEXT) text.add(" (\"%s\")", a.text ? a.text : "");
   text.add(": expected a number in ");
   add_range(text, p);
-  return ILAW_INVALID_PARAMETER;
+  return code;
 }
 
-// Checks a table, and keeps it: axes known, each once, points finite and increasing, values in range.
-inline ilaw_result read_table(const char* law, const ilaw_parameter& p, const ilaw_argument& a, table& made,
+// Checks an axis of a table: known, named once, points finite and increasing. known: its place in p.axes.
+inline ilaw_result check_axis(const ilaw_parameter& p, const ilaw_axis& axis, std::uint32_t& known,
                               message& text) {
-  const auto refuse = [&](const char* what, const char* axis = "") {
-    text.add("law '%s': parameter '%s': the table %s%s", law, p.name, what, axis);
-    return ILAW_INVALID_PARAMETER;
+  constexpr ilaw_result code = ILAW_INVALID_PARAMETER;
+  if (!axis.name || !axis.points || axis.count == 0)
+    return text.refuse(
+        code, "parameter '%s': the table has an axis without a name or point, expected at least 1 point",
+        p.name);
+  known = 0;
+  while (known < p.axis_count && std::strcmp(p.axes[known], axis.name) != 0) ++known;
+  if (known == p.axis_count) {
+    text.refuse(code, "parameter '%s': axis '%s' of the table is unknown: expected one of ", p.name,
+                axis.name);
+    for (std::uint32_t k = 0; k < p.axis_count; ++k) text.add("%s'%s'", k ? ", " : "", p.axes[k]);
+    return code;
+  }
+  for (std::uint64_t k = 0; k < axis.count; ++k)
+    if (const double x = axis.points[k]; !is_finite(x) || (k > 0 && x <= axis.points[k - 1])) {
+      text.refuse(code, "parameter '%s': point %llu of axis '%s' is ", p.name,
+                  static_cast<unsigned long long>(k), axis.name);
+      add_number(text, x);
+      text.add(": expected finite, increasing points");
+      return code;
+    }
+  return ILAW_OK;
+}
+
+// Checks a table, and keeps it.
+inline ilaw_result read_table(const ilaw_parameter& p, const ilaw_argument& a, table& made, message& text) {
+  const auto refuse = [&](const char* fault, const char* axis = "") {
+    return text.refuse(ILAW_INVALID_PARAMETER, "parameter '%s': the table %s%s", p.name, fault, axis);
   };
   if (a.axis_count < 1 || a.axis_count > 3 || !a.axes)
     return refuse("has no axis or more than three, expected 1 to 3");
@@ -134,38 +172,20 @@ inline ilaw_result read_table(const char* law, const ilaw_parameter& p, const il
     if (!sized::is_complete(a.axes[i]))
       return refuse("has an axis that is null or whose struct_size is of no version");
     axes[i] = sized::read(a.axes[i]);
-    if (!axes[i].name || !axes[i].points || axes[i].count == 0)
-      return refuse("has an axis without a name or point, expected at least 1 point");
     std::uint32_t known = 0;
-    while (known < p.axis_count && std::strcmp(p.axes[known], axes[i].name) != 0) ++known;
-    if (known == p.axis_count) {
-      text.add("law '%s': parameter '%s': axis '%s' of the table is unknown: expected one of ", law, p.name,
-               axes[i].name);
-      for (std::uint32_t k = 0; k < p.axis_count; ++k) text.add("%s'%s'", k ? ", " : "", p.axes[k]);
-      return ILAW_INVALID_PARAMETER;
-    }
+    if (const ilaw_result code = check_axis(p, axes[i], known, text); code != ILAW_OK) return code;
     made.named_axis[i] = static_cast<int>(known);
     for (std::uint32_t k = 0; k < i; ++k)
       if (std::strcmp(axes[k].name, axes[i].name) == 0) return refuse("has twice the axis ", axes[i].name);
     if (axes[i].count > ILAW_TABLE_MAX_VALUES / size) return refuse("has more than 16777216 values");
     size *= axes[i].count;
     stored += axes[i].count;
-    for (std::uint64_t k = 0; k < axes[i].count; ++k)
-      if (const double x = axes[i].points[k]; !is_finite(x) || (k > 0 && x <= axes[i].points[k - 1])) {
-        text.add("law '%s': parameter '%s': point %llu of axis '%s' is ", law, p.name,
-                 static_cast<unsigned long long>(k), axes[i].name);
-        add_number(text, x);
-        text.add(": expected finite, increasing points");
-        return ILAW_INVALID_PARAMETER;
-      }
   }
   for (std::uint64_t k = 0; k < size; ++k)
-    if (const ilaw_result code = check_number(law, p, a.values[k], text); code != ILAW_OK) return code;
+    if (const ilaw_result code = check_number(p, a.values[k], text); code != ILAW_OK) return code;
   auto* memory = static_cast<double*>(std::malloc((stored + size) * sizeof(double)));
-  if (!memory) {
-    text.add("law '%s': out of memory for the table of parameter '%s'", law, p.name);
-    return ILAW_OUT_OF_MEMORY;
-  }
+  if (!memory)
+    return text.refuse(ILAW_OUT_OF_MEMORY, "out of memory for the table of parameter '%s'", p.name);
   made.axis_count = static_cast<int>(a.axis_count);
   for (std::uint32_t i = 0; i < a.axis_count; ++i) {
     made.count[i] = axes[i].count;

@@ -321,6 +321,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
     a.normal_gain = select(first, a.normal_gain, b.normal_gain);
     a.tangential_gain = select(first, a.tangential_gain, b.tangential_gain);
     a.rupture = select(first, a.rupture, b.rupture);
+    a.rubbing = select(first, a.rubbing, b.rubbing);
     for (int k = 0; k < own_amount_count<Law>; ++k) a.amounts[k] = select(first, a.amounts[k], b.amounts[k]);
     a.refused = select(first, a.refused, b.refused);
   }

@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/instance_base.hpp>
-#include <ilaw/kit/detail/window_block.hpp>
+#include <ilaw/kit/detail/batch_checks.hpp>
+#include <ilaw/kit/detail/block_copies.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
@@ -103,13 +103,15 @@ class batch_walk {
       if (!n.listed && stays(a, components))
         return {values + n.first * a.node_stride, a.component_stride, components,
                 a.node_stride != 1 ? components : 0};
-    prefetch_block(values, a.node_stride, a.component_stride, n);
-    if (components == 3)
-      gather_three(values, a.node_stride, a.component_stride, n, copy);
-    else
-      for (int c = 0; c < components; ++c)
-        gather_column(values + c * a.component_stride, a.node_stride, n, copy + c * block_nodes);
+    gather_components(values, a, components, n, copy);
     return {copy, block_nodes, components, 0};
+  }
+  [[gnu::noinline]] static void gather_components(const Host* values, const ilaw_input& a, int components,
+                                                  const node_range& n, Number* copy) {
+    prefetch_block(values, a.node_stride, a.component_stride, n);
+    if (components == 3) return gather_three(values, a.node_stride, a.component_stride, n, copy);
+    for (int c = 0; c < components; ++c)
+      gather_column(values + c * a.component_stride, a.node_stride, n, copy + c * block_nodes);
   }
   const Number* gather_scalar(const ilaw_input& a, const node_range& n, Number* copy) const {
     return gather(a, 1, n, copy).at;
@@ -141,11 +143,13 @@ class batch_walk {
   }
   void scatter(const ilaw_output& a, const array<Number>& aimed, const node_range& n,
                const Number* copy) const {
-    if (aimed.at != copy) return;
-    Host* const values = numbers_in<Host>(a);
+    if (aimed.at == copy) scatter_components(numbers_in<Host>(a), a, aimed.count, n, copy);
+  }
+  [[gnu::noinline]] static void scatter_components(Host* values, const ilaw_output& a, int components,
+                                                   const node_range& n, const Number* copy) {
     prefetch_block(values, a.node_stride, a.component_stride, n);
-    if (aimed.count == 3) return scatter_three(values, a.node_stride, a.component_stride, n, copy);
-    for (int c = 0; c < aimed.count; ++c)
+    if (components == 3) return scatter_three(values, a.node_stride, a.component_stride, n, copy);
+    for (int c = 0; c < components; ++c)
       scatter_column(values + c * a.component_stride, a.node_stride, n, copy + c * block_nodes);
   }
 
@@ -251,7 +255,6 @@ class batch_walk {
 
   void open_inputs(view<Number>& v, const node_range& n) {
     v.v_free = gather(b_.v_free, d_, n, s_.v_free);
-    v.reads_previous = made_.inputs & ILAW_INPUT_V_PREVIOUS;
     const bool has_balance = wants_balance(made_, b_);
     const std::uint32_t read = made_.inputs | (has_balance ? made_.balance_inputs : 0U);
     if (v.reads_previous || has_balance) v.v_previous = gather(b_.v_previous, d_, n, s_.v_previous);
@@ -290,15 +293,7 @@ class batch_walk {
   bool status_stays(const node_range& n) const { return !n.listed && b_.status_stride == 1; }
   void run_part(const node_range& n, run_function loop, const void* law, tally& all) {
     view<Number> v{};
-    v.count = n.count;
-    v.step = {b_.time, b_.velocity_step, b_.position_step, 1.0 / b_.position_step};
-    v.impulse_guard = impulse_guard(std::is_same_v<Host, float>);
-    v.dimension = d_;
-    v.tangents_from = made_.tangents_from();
-    v.is_scalar = made_.delassus_numbers() == 1;
-    v.frame_follows = made_.frame_follows;
-    v.varying = made_.per_node_count > 0;
-    v.tables = made_.node_tables;
+    static_cast<view_options&>(v) = options_of(made_, b_, n.count);
     v.in_memory = std::is_same_v<Host, double> && n.count >= prefetch_from;
     open_inputs(v, n);
     open_outputs(v, n);

@@ -92,7 +92,7 @@ struct window_rows {
   ILAW_KIT_INLINE void put(mask where, std::int64_t k, vector<pack> a) const {
     const unsigned lanes = mask_bits(where);
     row rows[register_lanes];
-    to_rows(a, 0.0, rows, each_lane);
+    to_rows(a, 0.0, rows);
 #pragma GCC unroll 8
     for (int lane = 0; lane < register_lanes; ++lane)
       if (lanes >> lane & 1) {
@@ -106,7 +106,7 @@ struct window_rows {
   ILAW_KIT_INLINE void add(mask where, std::int64_t k, vector<pack> a) const {
     if (stride != 1) return put(where, k, vector_at(k) + a);
     row rows[register_lanes];
-    to_rows(select(where, a, vector<pack>{-0.0, -0.0, -0.0}), -0.0, rows, each_lane);
+    to_rows(select(where, a, vector<pack>{-0.0, -0.0, -0.0}), -0.0, rows);
 #pragma GCC unroll 8
     for (int lane = 0; lane < register_lanes; ++lane) {
       const row sum = values{first[lane], 1}(k) + rows[lane];
@@ -118,7 +118,7 @@ struct window_rows {
   // Four rows fill four registers, half a row or several each, and come out as columns; and back.
   template <int... K, class One = one>
   ILAW_KIT_INLINE static vector<pack> to_lanes(const row (&rows)[register_lanes],
-                                               std::integer_sequence<int, K...> all) {
+                                               std::integer_sequence<int, K...>) {
     One in[4];
 #pragma GCC unroll 4
     for (int c = 0; c < 4; ++c) {
@@ -129,21 +129,17 @@ struct window_rows {
       else
         in[c] = One{rows[c / 2][c % 2 * 2], rows[c / 2][c % 2 * 2 + 1]};
     }
-    const one a = every_second<0>(in[0], in[1], all), b = every_second<1>(in[0], in[1], all);
-    const one c = every_second<0>(in[2], in[3], all), d = every_second<1>(in[2], in[3], all);
+    One out[4];
+    to_columns(in, out);
     const auto wide = [](one v)
                           ILAW_KIT_LAMBDA { return pack::each([&](int) ILAW_KIT_LAMBDA { return v; }); };
-    return {wide(every_second<0>(b, d, all)), wide(every_second<1>(a, c, all)),
-            wide(every_second<1>(b, d, all))};
+    return {wide(out[1]), wide(out[2]), wide(out[3])};
   }
-  template <int... K, class One = one>
-  ILAW_KIT_INLINE static void to_rows(vector<pack> a, double before, row (&rows)[register_lanes],
-                                      std::integer_sequence<int, K...> all) {
-    const one first = before - one{};
-    const one e = zipped<0>(first, a.t1.v[0], all), f = zipped<0>(a.n.v[0], a.t2.v[0], all);
-    const one g = zipped<1>(first, a.t1.v[0], all), h = zipped<1>(a.n.v[0], a.t2.v[0], all);
-    const One out[4] = {zipped<0>(e, f, all), zipped<1>(e, f, all), zipped<0>(g, h, all),
-                        zipped<1>(g, h, all)};
+  template <class One = one>
+  ILAW_KIT_INLINE static void to_rows(vector<pack> a, double before, row (&rows)[register_lanes]) {
+    const One in[4] = {before - one{}, a.n.v[0], a.t1.v[0], a.t2.v[0]};
+    One out[4];
+    detail::to_rows(in, out);
 #pragma GCC unroll 8
     for (int lane = 0; lane < register_lanes; ++lane) {
       if constexpr (register_lanes == 8)

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/forms.hpp>
+#include <ilaw/kit/detail/law_on_packs.hpp>
 #include <ilaw/kit/detail/solver_kernel.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
@@ -49,16 +49,11 @@ struct device_array {
 // In the place of 3 numbers of a full H in the plane: a diagonal H in space has as many.
 inline constexpr int full_in_plane = 4;
 
-struct device_options {
+struct device_options : view_options {
   std::int32_t law_place;  // in its library
-  std::int64_t count;
   const std::int32_t* index;
   const std::int64_t* index64;
-  step_sizes step;
-  double impulse_guard;
-  std::int32_t index_base, dimension, delassus_numbers;
-  tangents tangents_from;
-  bool reads_previous, frame_follows, varying, moves, has_balance, has_amounts;
+  std::int32_t index_base, delassus_numbers;
   device_array v_free, v_previous, normal, tangent, delassus, gap, gap_offset, area;
   device_array impulse, velocity, energy, state_in, state_out, frame_in, frame_out, status;
   std::uint8_t* reasons;  // by position in the batch, as the next; null: not asked for

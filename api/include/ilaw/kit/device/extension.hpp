@@ -130,22 +130,15 @@ class device_writer {
 
   void write_options() {
     const int d = static_cast<int>(made_.dimension), numbers = made_.delassus_numbers();
-    to_.count = b_.node_count;
+    static_cast<view_options&>(to_) = options_of(made_, b_, b_.node_count);
     to_.index = b_.index;
     to_.index64 = b_.index64;
     to_.index_base = b_.index_base;
-    to_.step = {b_.time, b_.velocity_step, b_.position_step, 1.0 / b_.position_step};
-    to_.impulse_guard = impulse_guard(made_.numbers == ILAW_NUMBERS_FLOAT);
-    to_.dimension = d;
     to_.delassus_numbers = !made_.is_transverse() && d == 2 && numbers == 3 ? full_in_plane : numbers;
-    to_.tangents_from = made_.tangents_from();
-    to_.frame_follows = made_.frame_follows;
-    to_.varying = made_.per_node_count > 0;
   }
   void write_inputs() {
     const bool has_balance = wants_balance(made_, b_);
     const std::uint32_t read = made_.inputs | (has_balance ? made_.balance_inputs : 0U);
-    to_.reads_previous = made_.inputs & ILAW_INPUT_V_PREVIOUS;
     to_.v_free = numbers(b_.v_free);
     to_.delassus = numbers(b_.delassus);
     if (to_.reads_previous || has_balance) to_.v_previous = numbers(b_.v_previous);

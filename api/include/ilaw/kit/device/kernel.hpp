@@ -97,18 +97,8 @@ ILAW_KIT_INLINE std::int64_t node_of(const device_options& a, std::int64_t k) {
 template <class Law, class Number>
 ILAW_KIT_INLINE view<at_node<Law, Number>> view_of(const device_arguments<Law>& a, std::int64_t node) {
   view<at_node<Law, Number>> v{};
+  static_cast<view_options&>(v) = a;
   v.count = 1;
-  v.step = a.step;
-  v.impulse_guard = a.impulse_guard;
-  v.dimension = a.dimension;
-  v.tangents_from = a.tangents_from;
-  v.is_scalar = a.delassus_numbers == 1;
-  v.reads_previous = a.reads_previous;
-  v.frame_follows = a.frame_follows;
-  v.varying = a.varying;
-  v.moves = a.moves;
-  v.has_balance = a.has_balance;
-  v.has_amounts = a.has_amounts;
   v.v_free = array_at<const Number>(a.v_free, node, a.dimension);
   v.v_previous = array_at<const Number>(a.v_previous, node, a.dimension);
   v.normal = array_at<const Number>(a.normal, node, a.dimension);
@@ -143,7 +133,7 @@ ILAW_KIT_INLINE bool take_parameters_at(Law& law, const device_arguments<Law>& a
     const device_array& given = a.parameters[k];
     if (!given.at) return;
     const auto value = static_cast<double>(static_cast<const Number*>(given.at)[node * given.node_stride]);
-    constexpr parameter_range range = range_of(Law::parameters[k]);
+    constexpr parameter_range range = Law::parameters[k].range();
     good = good & range.has(value);
     Law::parameters[k].member.set(own, value);
   };
@@ -250,3 +240,18 @@ ILAW_KIT_INLINE void run_laws(const void* block, std::int64_t k) {
 }
 
 }  // namespace ilaw::kit::detail
+
+// The entry of a law library as a device's compiler sees it.
+#define ILAW_KIT_KERNEL(numbers, frame, form, part)                                                          \
+  extern "C"                                                                                                 \
+      __attribute__((global)) void ilaw_##numbers##_##frame##_##form##_##part(ilaw_kit_device_block block) { \
+    ilaw_kit_device_run<ILAW_KIT_DEVICE_VARIANT(numbers, frame, form, part)>(&block);                        \
+  }
+#define ILAW_PLUGIN(name, version, vendor, licence, ...)                                          \
+  using ilaw_kit_device_block = ilaw::kit::detail::device_block_of<__VA_ARGS__>;                  \
+  template <ilaw::kit::detail::device_variant Variant>                                            \
+  ILAW_KIT_INLINE void ilaw_kit_device_run(const void* block) {                                   \
+    ilaw::kit::detail::run_laws<Variant, __VA_ARGS__>(block, ilaw::kit::detail::thread_number()); \
+  }                                                                                               \
+  ILAW_KIT_DEVICE_KERNELS(ILAW_KIT_KERNEL)                                                        \
+  _Pragma("clang force_cuda_host_device end")

@@ -1,13 +1,20 @@
-// random_motion.hpp - what moves and meets beside free bodies and obstacles at rest: obstacles that turn and
-// follow paths, second bodies, and nodes that are driven.
+// random_parts.hpp - parts of a random scene: parameters of a law, and what moves and meets beside free
+// bodies and obstacles at rest: obstacles that turn and follow paths, second bodies, and nodes that are
+// driven.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "stress/draw.hpp"
 
+#include <ilaw/ilaw.h>
+
 #include <nlohmann/json.hpp>
 
 namespace ilaw::host {
+
+// Parameters as a scene gives them, drawn from what the law says of itself. Times are drawn around the time
+// step dt.
+nlohmann::json random_parameters(const ilaw_law& law, double dt, Draw& draw);
 
 // The figures that a scene of one body was drawn for.
 struct DrawnScene {
