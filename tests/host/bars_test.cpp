@@ -23,13 +23,9 @@ std::vector<double> run_forces(Scene& scene, Integrator& integrator, int node) {
 
 // ---- a bar on a wall (Doyen, Ern, Piperno 2011) ---------------------------------------------------------
 
-std::string doyen_bar(double cfl, int elements) {
-  return R"({"model": {"type": "bars", "bars": [{"name": "bar", "start": 5.0, "length": 10.0, "elements": )" +
-         std::to_string(elements) + R"(, "young": 900.0, "density": 1.0, "velocity": -10.0}]},
-    "time": {"cfl": )" +
-         number(cfl) + R"(, "end": 1.6},
-    "interfaces": [{"law": "contact", "nodes": "bar.left", "parameters": {"activation": "predictive"},
-                    "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})";
+json doyen_bar(double cfl, int elements) {
+  const json wall = law_on("bar.left", ground(1), "contact", {{"activation", "predictive"}});
+  return until_at_cfl(1.6, cfl, scene_of_bars({bar("bar", 5, 10, elements, 900, 1, -10)}, {wall}));
 }
 
 // c = 30: contact from 5/10 to 5/10 + 2L/c, that is 3 N/2 and 3 N/2 + 2 N steps of h = L/(N c), with the
@@ -40,10 +36,9 @@ std::string doyen_bar(double cfl, int elements) {
 TEST(BarOnWall, HasExactContactAtTheCriticalStep) {
   for (const int elements : {4, 50, 100, 400}) {
     GIVEN(elements);
-    Scene scene = scene_of(doyen_bar(1.0, elements));
+    auto [scene, integrator] = simulation_of(doyen_bar(1.0, elements));
     const double h = 10.0 / 30.0 / elements, rounding = 300.0 * 3.5 * elements * 2.2e-16 * 100.0;
     ASSERT_NEAR(scene.dt, h, 1e-16);
-    Integrator integrator = integrator_of(scene);
     const std::vector<double> forces = run_forces(scene, integrator, node_of(scene, "bar.left"));
     const int meets = 3 * elements / 2, leaves = meets + 2 * elements;
     for (int step = 1; step <= static_cast<int>(forces.size()); ++step) {
@@ -123,16 +118,13 @@ TEST(TwoBars, AreLimitedByTheFasterElement) {
 // stops 1.5 with the impulse 1.5/H = 0.9 h. In that where they part, an impulse of 0.9 h would let the ends
 // go at 0.3 from each other; the law gives no more than together needs, 0.9 h - 0.3/H = 0.72 h.
 TEST(TwoBars, OfUnequalImpedancesAndLengthsMeetAndPart) {
-  Scene scene = scene_of(R"({"model": {"type": "bars", "bars": [
-      {"name": "a", "start": -1.15, "length": 1.0, "elements": 50, "young": 4.0, "density": 1.0, "velocity": 1.0},
-      {"name": "b", "start": 0.0, "length": 1.2, "elements": 80, "young": 9.0, "density": 4.0, "section": 0.5,
-       "velocity": -0.5}]},
-    "time": {"cfl": 1.0, "end": 1.65},
-    "interfaces": [{"law": "contact", "nodes": "b.left", "parameters": {"activation": "predictive"},
-                    "against": {"nodes": "a.right", "normal": [1.0]}}]})");
+  json source = scene_of_bars({bar("a", -1.15, 1, 50, 4, 1, 1), bar("b", 0, 1.2, 80, 9, 4, -0.5)},
+                              {law_between("b.left", {{"nodes", "a.right"}, {"normal", {1}}}, "contact",
+                                           {{"activation", "predictive"}})});
+  source["model"]["bars"][1]["section"] = 0.5;
+  auto [scene, integrator] = simulation_of(until_at_cfl(1.65, 1, source));
   ASSERT_NEAR(scene.dt, 0.01, 1e-17);
   const int a = node_of(scene, "a.right"), b = node_of(scene, "b.left");
-  Integrator integrator = integrator_of(scene);
   double v_a = 0.0, v_b = 0.0;        // of the step before
   constexpr double rounding = 1e-11;  // 165 steps on velocities of 1 and forces of 2
   while (integrator.steps() < scene.steps) {
@@ -167,14 +159,10 @@ ContactNode contact_node(double cfl, int elements) {
   constexpr double length = 0.254, young = 2.1e11, density = 7847.0, gap = 1e-3 * length, speed = 5.0;
   const double c = std::sqrt(young / density), meets = gap / speed, leaves = meets + 2.0 * length / c;
   const double end = leaves + 6.0 * length / c;
-  auto [scene, integrator] =
-      simulation_of(R"({"model": {"type": "bars", "bars": [{"name": "bar", "start": )" + number(gap) +
-                    R"(, "length": 0.254, "elements": )" + std::to_string(elements) +
-                    R"(, "young": 2.1e11, "density": 7847.0, "section": 6.45e-4, "velocity": -5.0}]},
-    "time": {"cfl": )" +
-                    number(cfl) + R"(, "end": )" + number(end) + R"(},
-    "interfaces": [{"law": "contact", "parameters": {"activation": "moreau"}, "nodes": "bar.left",
-                    "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})");
+  json source = scene_of_bars({bar("bar", gap, length, elements, young, density, -speed)},
+                              {law_on("bar.left", ground(1), "contact", {{"activation", "moreau"}})});
+  source["model"]["bars"][0]["section"] = 6.45e-4;
+  auto [scene, integrator] = simulation_of(until_at_cfl(end, cfl, source));
   double u_error = 0.0, u_sum = 0.0, v_error = 0.0, v_sum = 0.0, peak_force = 0.0;
   while (integrator.steps() < scene.steps) {
     const double v_before = integrator.velocity()[0];
@@ -215,15 +203,12 @@ TEST(ElasticBar, IsAsNearItsExactReboundAsPublished) {
 // ---- a glued bar ----------------------------------------------------------------------------------------
 
 // E = rho = L = S = F = 1, R_Y = 1.
-std::string glued_bar(double cfl, double memory, double end) {
-  return R"({"model": {"type": "bars", "bars": [{"name": "bar", "length": 1.0, "elements": 100, "young": 1.0, "density": 1.0}]},
-    "time": {"cfl": )" +
-         number(cfl) + R"(, "end": )" + number(end) + R"(},
-    "loads": [{"type": "force", "nodes": "bar.right", "direction": [1.0], "history": [[0.0, 1.0]]}],
-    "interfaces": [{"law": "postit", "nodes": "bar.left",
-                    "parameters": {"initial_adhesion": 1.0, "memory": )" +
-         number(memory) + R"(, "buckets": 256},
-                    "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})";
+json glued_bar(double cfl, double memory, double end) {
+  const json glue = law_on("bar.left", ground(1), "postit",
+                           {{"initial_adhesion", 1}, {"memory", memory}, {"buckets", 256}});
+  const json pull =
+      json::parse(R"({"type": "force", "nodes": "bar.right", "direction": [1], "history": [[0, 1]]})");
+  return until_at_cfl(end, cfl, scene_of_bars({bar("bar", 0, 1, 100, 1, 1)}, {glue}, {pull}));
 }
 
 // The glue feels 2F from L/c = 1 on: with a window longer than R_Y/(2F) = 0.5 it breaks at 1.5, and the end
@@ -262,16 +247,14 @@ TEST(GluedBar, HoldsWhenTheWindowIsTooShort) {
 // ---- long runs ------------------------------------------------------------------------------------------
 
 // A bar between two walls, thousands of impacts.
-std::string bar_between_walls(double cfl, int elements, double restitution, double end) {
-  return R"({"model": {"type": "bars", "bars": [{"name": "bar", "start": 0.5, "length": 1.0, "elements": )" +
-         std::to_string(elements) + R"(, "young": 1.0, "density": 1.0, "velocity": -0.1}]},
-    "time": {"cfl": )" +
-         number(cfl) + R"(, "end": )" + number(end) + R"(},
-    "interfaces": [{"name": "left", "law": "contact", "nodes": "bar.left", "parameters": {"activation": "moreau", "restitution": )" +
-         number(restitution) + R"(},
-                    "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}},
-                   {"name": "right", "law": "contact", "nodes": "bar.right", "parameters": {"activation": "moreau", "restitution": 1.0},
-                    "obstacle": {"type": "plane", "point": [2.0], "normal": [-1.0]}}]})";
+json bar_between_walls(double cfl, int elements, double restitution, double end) {
+  const auto wall = [](const char* side, const json& obstacle, double e) {
+    return law_on(side, obstacle, "contact", {{"activation", "moreau"}, {"restitution", e}});
+  };
+  return until_at_cfl(
+      end, cfl,
+      scene_of_bars({bar("bar", 0.5, 1, elements, 1, 1, -0.1)},
+                    {wall("bar.left", ground(1), restitution), wall("bar.right", plane({2}, {-1}), 1)}));
 }
 
 double total(const EnergyReport& energy) { return energy.kinetic + energy.internal; }

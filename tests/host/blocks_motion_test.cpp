@@ -25,27 +25,21 @@ json block(const json& size, const json& elements, const json& of, const char* e
                                    {"element", element}}})}};
 }
 
-json shock(const json& nodes, const json& impulse) {
-  return {{"type", "shock"}, {"nodes", nodes}, {"time", 1e-9}, {"impulse", impulse}};
-}
-
 // ---- waves ----------------------------------------------------------------------------------------------
 
 // A column of elements that moves along its axis alone is a bar: of Young's modulus E where Poisson's ratio
 // is 0, of lambda + 2 mu where it cannot narrow. A shock on its end makes its nodes move as those of the bar.
 void expect_a_bar(double ratio, double modulus, json loads) {
   const json time = {{"dt", 0.7 * 0.05 * std::sqrt(2.0 / modulus)}, {"end", 6.0}};
-  loads.push_back(shock("b.x_max", {-0.01, 0.0, 0.0}));
+  loads.push_back(shock("b.x_max", 1e-9, {-0.01, 0.0, 0.0}));
   Scene blocks = scene_of({{"model", block({2.0, 0.3, 0.2}, {40, 1, 1}, material("linear", ratio))},
                            {"time", time},
                            {"loads", loads},
                            {"interfaces", json::array()}});
-  const json bar = {{"name", "b"},      {"start", 0.1},   {"length", 2.0},  {"elements", 40},
-                    {"young", modulus}, {"density", 2.0}, {"section", 0.06}};
-  Scene bars = scene_of({{"model", {{"type", "bars"}, {"bars", json::array({bar})}}},
-                         {"time", time},
-                         {"loads", json::array({shock("b.right", json::array({-0.04}))})},
-                         {"interfaces", json::array()}});
+  json source = scene_of_bars({bar("b", 0.1, 2, 40, modulus, 2)}, {}, {shock("b.right", 1e-9, {-0.04})});
+  source["model"]["bars"][0]["section"] = 0.06;
+  source["time"] = time;
+  Scene bars = scene_of(source);
   Integrator block_run = integrator_of(blocks), bar_run = integrator_of(bars);
   while (bar_run.steps() < bars.steps) {
     bar_run.step();
@@ -99,7 +93,7 @@ TEST(LinearBlock, IsStableUpToItsCriticalStepAndNotBeyond) {
   for (const json& elements : {json{1, 1, 1}, json{4, 3, 5}}) {
     Scene scene = scene_of({{"model", block({1.0, 1.0, 1.0}, elements, material("linear", 0.3))},
                             {"time", {{"dt", 1.0}, {"end", 1.0}}},
-                            {"loads", json::array({shock({0}, {0.02, -0.01, 0.015})})},
+                            {"loads", json::array({shock({0}, 1e-9, {0.02, -0.01, 0.015})})},
                             {"interfaces", json::array()}});
     const double bound = scene.model->critical_step(), limit = exact_critical_step(*scene.model);
     if (elements[0] == 1) {
@@ -131,7 +125,8 @@ void expect_conserved(const char* law, const char* element, double ratio) {
   auto [scene, integrator] = simulation_of(scene_of(
       {{"model", block({1.0, 0.5, 0.4}, {4, 3, 2}, material(law, ratio), element)},
        {"time", {{"cfl", 0.5}, {"end", 20.0}}},
-       {"loads", {shock("b.x_min", {0.002, -0.002, 0.004}), shock("b.x_max", {-0.001, 0.003, -0.001})}},
+       {"loads",
+        {shock("b.x_min", 1e-9, {0.002, -0.002, 0.004}), shock("b.x_max", 1e-9, {-0.001, 0.003, -0.001})}},
        {"interfaces", json::array()}}));
   integrator.step();
   const Eigen::Vector3d start = momentum(scene, integrator), turn = integrator.angular_momentum();

@@ -71,12 +71,12 @@ TEST(BlockImpact, MeetsTheFloorAndTheBall) {
 
 // Weights sum to one, so that what one body gains the other loses.
 TEST(NodeToFacet, KeepsMomentum) {
-  Scene scene = scene_of(R"({"model": {"type": "blocks", "blocks": [
-    {"name": "a", "size": [1, 1, 0.5], "elements": [3, 3, 2], "material": {"type": "linear", "young": 100, "poisson": 0.2, "density": 1}},
-    {"name": "b", "corner": [0.13, 0.21, 0.52], "size": [0.7, 0.6, 0.5], "elements": [4, 2, 2], "velocity": [0.1, 0.0, -1.0],
-     "material": {"type": "linear", "young": 50, "poisson": 0.3, "density": 1}}]},
-    "time": {"cfl": 0.5, "end": 0.4},
-    "interfaces": [{"law": "coulomb", "parameters": {"friction": 0.4}, "nodes": "b.z_min", "against": {"surface": "a.z_max"}}]})");
+  Scene scene = scene_of(until_at_cfl(
+      0.4, 0.5,
+      scene_of_blocks(
+          {block("a", {0, 0, 0}, {1, 1, 0.5}, {3, 3, 2}, elastic(100, 0.2, 1)),
+           block("b", {0.13, 0.21, 0.52}, {0.7, 0.6, 0.5}, {4, 2, 2}, elastic(50, 0.3, 1), {0.1, 0, -1})},
+          {law_between("b.z_min", {{"surface", "a.z_max"}}, "coulomb", {{"friction", 0.4}})})));
   Integrator integrator = integrator_of(scene);
   const auto momentum = [&] {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -100,11 +100,11 @@ TEST(NodeToFacet, KeepsMomentum) {
 // The mesh below moves under a point along flat facets: the gap must not notice where one ends and the next
 // begins.
 TEST(NodeToFacet, GapIsContinuousAcrossFacetsAndOpenBeyondTheBorder) {
-  Scene scene = scene_of(R"({"model": {"type": "blocks", "blocks": [
-    {"name": "a", "size": [1, 1, 0.5], "elements": [4, 4, 1], "material": {"type": "linear", "young": 100, "poisson": 0.2, "density": 1}},
-    {"name": "b", "corner": [0.3, 0.3, 0.6], "size": [0.2, 0.2, 0.2], "elements": [1, 1, 1], "material": {"type": "linear", "young": 50, "poisson": 0.3, "density": 1}}]},
-    "time": {"cfl": 0.5, "end": 0.4},
-    "interfaces": [{"law": "contact", "nodes": "b.z_min", "against": {"surface": "a.z_max"}}]})");
+  Scene scene = scene_of(until_at_cfl(
+      0.4, 0.5,
+      scene_of_blocks({block("a", {0, 0, 0}, {1, 1, 0.5}, {4, 4, 1}, elastic(100, 0.2, 1)),
+                       block("b", {0.3, 0.3, 0.6}, {0.2, 0.2, 0.2}, {1, 1, 1}, elastic(50, 0.3, 1))},
+                      {law_between("b.z_min", {{"surface", "a.z_max"}}, "contact")})));
   Interface& interface = *scene.interfaces[0];
   const Counterpart& counterpart = *interface.setup().counterpart;
   Dofs u = Dofs::Zero(scene.model->mass().size());
@@ -163,21 +163,15 @@ TEST(Chain, ImpulsesAddUpFromBallToBall) {
 // Balls of mass 1 that rest on each other in a column, a little compressed: rounding opens no contact. Where
 // there are more, they are a column of their own beside it.
 json column_scene(int balls, int more = 0) {
-  json points = json::array(), interfaces = json::array();
+  std::vector<json> points, interfaces;
   for (int k = 0; k < balls + more; ++k) {
     const int place = k < balls ? k : k - balls;
-    points.push_back({{"mass", 1.0}, {"position", {place + 0.5}}});
-    interfaces.push_back({{"law", "contact"}, {"nodes", {k}}, {"gap_offset", place == 0 ? 0.501 : 1.001}});
-    if (place == 0)
-      interfaces.back()["obstacle"] = {{"type", "plane"}, {"point", {0.0}}, {"normal", {1.0}}};
-    else
-      interfaces.back()["against"] = {{"nodes", {k - 1}}, {"normal", {1.0}}};
+    points.push_back(point(1, {place + 0.5}));
+    interfaces.push_back(place == 0 ? law_on({k}, ground(1), "contact")
+                                    : law_between({k}, {{"nodes", {k - 1}}, {"normal", {1}}}, "contact"));
+    interfaces.back()["gap_offset"] = place == 0 ? 0.501 : 1.001;
   }
-  const json gravity = {{"type", "gravity"}, {"acceleration", {-10.0}}};
-  return {{"model", {{"type", "points"}, {"dimension", 1}, {"points", points}}},
-          {"time", {{"dt", 0.001}, {"end", 0.01}}},
-          {"loads", json::array({gravity})},
-          {"interfaces", interfaces}};
+  return until(0.01, 0.001, scene_of_points(points, interfaces, {gravity({-10})}));
 }
 Scene column(int balls, int more = 0) { return scene_of(column_scene(balls, more).dump()); }
 constexpr int too_long = 2100;  // for Newton's method, too
@@ -270,14 +264,10 @@ TEST(Column, WarnsWhenOneOfTwoIsTooLong) {
 // A spring so stiff that it throws the mass back farther at every step.
 TEST(RunWarnings, TellThatAPenaltyPutsInEnergy) {
   const auto dropped = [](double stiffness) {
-    Scene scene =
-        scene_of(R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [0.1]}]},
-      "time": {"dt": 1e-3, "end": 1}, "loads": [{"type": "gravity", "acceleration": [-10]}],
-      "interfaces": [{"law": "penalty", "parameters": {"stiffness": )" +
-                 std::to_string(stiffness) +
-                 R"(}, "nodes": "all", "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})");
-    Integrator integrator = integrator_of(scene);
-    while (integrator.steps() < scene.steps) integrator.step();
+    auto [scene, integrator] = run_to_end(until(
+        1, 1e-3,
+        scene_of_points({point(1, {0.1})}, {law_on("all", ground(1), "penalty", {{"stiffness", stiffness}})},
+                        {gravity({-10})})));
     return integrator.warnings();
   };
   EXPECT_TRUE(dropped(1e4).empty());
@@ -290,22 +280,19 @@ TEST(RunWarnings, TellThatAPenaltyPutsInEnergy) {
 // Bars between two walls. At the critical step itself their fastest vibration grows by as much in every step,
 // without any energy; not where nothing excites it.
 TEST(RunWarnings, TellThatTheFastestVibrationGrows) {
-  const auto warnings_at = [](const char* cfl, const char* end, const char* wall) {
+  const auto warnings_at = [](double cfl, double end, double wall) {
     auto [scene, integrator] =
-        run_to_end(R"({"model": {"type": "bars", "bars": [{"name": "bar", "start": 0.5, "length": 1,
-      "elements": 20, "young": 1, "density": 1, "velocity": -0.1}]}, "time": {"cfl": )" +
-                   std::string(cfl) + R"(, "end": )" + end + R"(}, "interfaces": [
-      {"nodes": "bar.left", "law": "contact", "obstacle": {"type": "plane", "point": [)" +
-                   wall + R"(], "normal": [1]}},
-      {"nodes": "bar.right", "law": "contact",
-       "obstacle": {"type": "plane", "point": [2], "normal": [-1]}}]})");
+        run_to_end(until_at_cfl(end, cfl,
+                                scene_of_bars({bar("bar", 0.5, 1, 20, 1, 1, -0.1)},
+                                              {law_on("bar.left", plane({wall}, {1}), "contact"),
+                                               law_on("bar.right", plane({2}, {-1}), "contact")})));
     return integrator.warnings();
   };
-  const std::vector<std::string> warnings = warnings_at("1", "100", "0");
+  const std::vector<std::string> warnings = warnings_at(1, 100, 0);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_THAT(warnings[0], HasSubstr("the fastest vibration of the mesh grows"));
-  EXPECT_TRUE(warnings_at("0.999", "100", "0").empty());
-  EXPECT_TRUE(warnings_at("1", "100", "-100").empty());
+  EXPECT_TRUE(warnings_at(0.999, 100, 0).empty());
+  EXPECT_TRUE(warnings_at(1, 100, -100).empty());
 }
 
 // On stderr, in the run's line and in the summary.

@@ -115,13 +115,10 @@ TEST(Driven, PointSlidesUpASlope) {
 
 // A law that is rigid and driven along its normal ends the run with a reason.
 TEST(Driven, AgainstARigidLawEndsTheRun) {
-  json source = json::parse(R"({
-    "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [0, 0.05]}]},
-    "time": {"dt": 0.0037, "end": 0.1},
-    "loads": [{"type": "motion", "nodes": [0], "axes": [1], "velocity": [0, -1]}],
-    "interfaces": [{"name": "floor", "law": "contact", "nodes": [0],
-      "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}}],
-    "output": {"watch": [0]}})");
+  const json down = json::parse(R"({"type": "motion", "nodes": [0], "axes": [1], "velocity": [0, -1]})");
+  json source = until(
+      0.1, 0.0037,
+      scene_of_points({point(2, {0, 0.05})}, {named("floor", law_on({0}, ground(2), "contact"))}, {down}));
   EXPECT_THAT(
       run_scene(source),
       Exits(1, HasSubstr(
@@ -134,11 +131,9 @@ TEST(Driven, AgainstARigidLawEndsTheRun) {
 
 // Nothing is left to solve where nodes on both sides are driven along all axes.
 TEST(Driven, AlongAllAxesOnBothSidesIsRefused) {
-  json source = json::parse(R"({
-    "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [0, 0.05]}, {"mass": 2, "position": [0, 0]}]},
-    "time": {"dt": 0.0037, "end": 0.1},
-    "loads": [{"type": "motion", "nodes": [0], "velocity": [0, -1]}],
-    "interfaces": [{"name": "pair", "law": "contact", "nodes": [0], "against": {"nodes": [1], "normal": [0, 1]}}]})");
+  const json down = json::parse(R"({"type": "motion", "nodes": [0], "velocity": [0, -1]})"),
+             pair = law_between({0}, {{"nodes", {1}}, {"normal", {0, 1}}}, "contact");
+  json source = until(0.1, 0.0037, scene_of_points({point(2, {0, 0.05}), point(2, {0, 0})}, {pair}, {down}));
   EXPECT_EQ(refusal_of(source), "not refused");
   source["loads"].push_back({{"type", "motion"}, {"nodes", {1}}});
   EXPECT_EQ(
@@ -151,10 +146,9 @@ TEST(Driven, AlongAllAxesOnBothSidesIsRefused) {
 
 // A block far beyond its critical step ends the run with a reason, soon; at the critical one it does not.
 TEST(Instability, EndsTheRunWithAReason) {
-  json source = scene_of_blocks(
-      {block("b", {0, 0, 0.01}, {1, 1, 1}, {3, 3, 3}, elastic(1e6, 0.3, 1000))},
-      R"([{"law": "contact", "nodes": "b.z_min", "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}])");
-  source["model"]["blocks"][0]["velocity"] = {0, 0, -1};
+  json source =
+      scene_of_blocks({block("b", {0, 0, 0.01}, {1, 1, 1}, {3, 3, 3}, elastic(1e6, 0.3, 1000), {0, 0, -1})},
+                      {law_on("b.z_min", ground(3), "contact")});
   source["time"] = {{"cfl", 1}, {"end", 1}};
   const double critical = scene_of(source).dt;
   for (const double part : {1.8, 1.4, 1.0, 0.999, 0.7}) {
@@ -182,12 +176,10 @@ TEST(Instability, OfASpringIsToldAtItsFirstContact) {
 // by no more than the energy of the bar allows, however often it opens.
 TEST(ImplicitSpring, ClosesAtItsDepthImpactAfterImpact) {
   constexpr double stiffness = 2000.0, speed = 0.05;
-  json source = json::parse(R"({
-    "model": {"type": "bars", "bars": [{"name": "bar", "length": 1, "elements": 20, "young": 1, "density": 1, "velocity": -0.05}]},
-    "interfaces": [{"law": "penalty", "nodes": "bar.left", "obstacle": {"type": "plane", "point": [0], "normal": [1]}},
-                   {"law": "penalty", "nodes": "bar.right", "obstacle": {"type": "plane", "point": [1], "normal": [-1]}}]})");
-  for (json& interface : source["interfaces"])
-    interface["parameters"] = {{"stiffness", stiffness}, {"integration", "implicit"}};
+  const json parameters = {{"stiffness", stiffness}, {"integration", "implicit"}};
+  json source = scene_of_bars({bar("bar", 0, 1, 20, 1, 1, -speed)},
+                              {law_on("bar.left", ground(1), "penalty", parameters),
+                               law_on("bar.right", plane({1}, {-1}), "penalty", parameters)});
   for (const double cfl : {0.999, 0.7, 0.53}) {
     source["time"] = {{"cfl", cfl}, {"end", 400}};
     auto [scene, integrator] = simulation_of(source);
@@ -207,11 +199,9 @@ TEST(ImplicitSpring, ClosesAtItsDepthImpactAfterImpact) {
 // With e < 1 a bar that settles on its floor stays at its depth: what restitution takes off the indentation
 // is given back while the spring stays closed. Without that a spring of ten elements is 0.3 elements deep.
 TEST(ImplicitSpring, StaysAtItsDepthUnderABarThatSettles) {
-  constexpr double speed = 0.05, gravity = 0.01, element = 0.05;
-  json source = json::parse(R"({
-    "model": {"type": "bars", "bars": [{"name": "bar", "length": 1, "elements": 20, "young": 1, "density": 1, "velocity": -0.05}]},
-    "loads": [{"type": "gravity", "acceleration": [-0.01]}],
-    "interfaces": [{"law": "penalty", "nodes": "bar.left", "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})");
+  constexpr double speed = 0.05, weight = 0.01, element = 0.05;
+  json source = scene_of_bars({bar("bar", 0, 1, 20, 1, 1, -speed)},
+                              {law_on("bar.left", ground(1), "penalty")}, {gravity({-weight})});
   for (const double stiffness : {200.0, 2000.0})
     for (const double restitution : {0.0, 0.5})
       for (const double cfl : {0.98, 0.7, 0.53}) {
@@ -228,7 +218,7 @@ TEST(ImplicitSpring, StaysAtItsDepthUnderABarThatSettles) {
           fastest = std::max(fastest, std::abs(integrator.velocity()[0]));
           if (2 * integrator.steps() > scene.steps) late = std::max(late, depth);
         }
-        const double compressed = speed / std::sqrt(stiffness) + gravity / stiffness;
+        const double compressed = speed / std::sqrt(stiffness) + weight / stiffness;
         EXPECT_LE(deepest, scene.dt * fastest + compressed);
         EXPECT_LE(late, 0.15 * element);
         EXPECT_LE(integrator.energy().balance_error, 1e-12);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "program_runner.hpp"
+#include "scene_parts.hpp"
 #include "support/matchers.hpp"
 #include "support/order.hpp"
 #include "support/random.hpp"
@@ -62,32 +63,6 @@ std::string refusal_of(const Source& source) {
 
 // Three steps without a common factor.
 inline constexpr double coprime_steps[] = {1e-2, 3.7e-3, 1.3e-3};
-
-inline json elastic(double young, double poisson, double density) {
-  return {{"type", "linear"}, {"young", young}, {"poisson", poisson}, {"density", density}};
-}
-using Triple = std::array<double, 3>;
-inline json block(const char* name, const Triple& corner, const Triple& size,
-                  const std::array<int, 3>& elements, const json& material) {
-  return {{"name", name}, {"corner", corner}, {"size", size}, {"elements", elements}, {"material", material}};
-}
-// Bodies and interfaces; the time is the test's own.
-inline json scene_of_blocks(const std::vector<json>& blocks, const char* interfaces) {
-  return {{"model", {{"type", "blocks"}, {"blocks", blocks}}}, {"interfaces", json::parse(interfaces)}};
-}
-
-// A point of mass 1 on a floor, under its weight of 10, until 0.2.
-inline json resting_point(const char* law, const json& parameters, double h) {
-  json source = json::parse(R"({
-    "model": {"type": "points", "dimension": 2, "points": [{"mass": 1, "position": [0, 0]}]},
-    "loads": [{"type": "gravity", "name": "weight", "acceleration": [0, -10]}],
-    "interfaces": [{"name": "floor", "nodes": [0], "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}}],
-    "output": {"watch": [0], "forces": ["floor", "weight"], "events": true}})");
-  source["interfaces"][0]["law"] = law;
-  if (!parameters.is_null()) source["interfaces"][0]["parameters"] = parameters;
-  source["time"] = {{"dt", h}, {"end", 0.2}};
-  return source;
-}
 
 inline Integrator integrator_of(Scene& scene) {
   return Integrator(*scene.model, scene.loads, scene.interfaces, scene.dt, scene.prestress);

@@ -381,6 +381,33 @@ TEST(Mesh, HexahedraOfATubeDoNotLock) {
 
 // ---- surfaces -------------------------------------------------------------------------------------------
 
+// The weights of a triangle's corners give the point below a node, of a body over triangles of no symmetry.
+TEST(Mesh, TrianglesInterpolateTheirCorners) {
+  const MeshFile file(box_mesh({4, 3, 2}, {2.0, 1.2, 0.9}, true, [](const Eigen::Vector3d& x) {
+    return Eigen::Vector3d(x[0] + 0.3 * x[1], x[1], x[2]);
+  }));
+  const double height = 0.05;
+  json source = scene_of_blocks(
+      {block("b", {0.41, 0.13, 0.9 + height}, {1.43, 0.97, 0.2}, {5, 4, 1}, elastic(1, 0, 1))},
+      {law_between("b.z_min", {{"surface", "m.z_max"}}, "contact")});
+  source["model"]["type"] = "solids";
+  source["model"]["meshes"] = {{{"name", "m"}, {"file", file.path()}, {"material", elastic(1, 0, 1)}}};
+  const Scene scene = scene_of(until_at_cfl(1, 0.9, source));
+  const std::vector<int>& nodes = scene.interfaces[0]->nodes();
+  const Counterpart& surface = *scene.interfaces[0]->setup().counterpart;
+  const Dofs u = Dofs::Zero(scene.model->mass().size());
+  ASSERT_EQ(nodes.size(), 30U);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const ContactPoint contact = surface.contact_point(static_cast<int>(k), u, 0.0);
+    Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+    contact.for_each_node(nodes[k], [&](int node, double weight) {
+      offset += weight * scene.model->position().segment<3>(3 * Eigen::Index{node});
+    });
+    EXPECT_LT((offset - Eigen::Vector3d(0, 0, height)).norm(), 1e-14) << k;
+    EXPECT_NEAR(contact.gap, height, 1e-14) << k;
+  }
+}
+
 // A box that rests on the triangles of a mesh is pressed down: the force on the floor is that on its top, and
 // a uniform pressure goes through meshes that do not match.
 TEST(Mesh, TrianglesAreASurface) {

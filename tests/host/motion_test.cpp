@@ -6,13 +6,10 @@
 namespace ilaw::host::testing {
 namespace {
 
-std::string ball(double restitution, double h, double end, double height) {
-  return R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 2.0, "position": [)" +
-         number(height) + R"(]}]}, "time": {"dt": )" + number(h) + R"(, "end": )" + number(end) +
-         R"(}, "loads": [{"type": "gravity", "acceleration": [-10.0]}], "interfaces": [{"law": "contact", "parameters": {"restitution": )" +
-         number(restitution) +
-         R"(, "activation": "moreau"}, "nodes": "all",
-             "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})";
+json ball(double restitution, double h, double end, double height) {
+  const json floor =
+      law_on("all", ground(1), "contact", {{"restitution", restitution}, {"activation", "moreau"}});
+  return until(end, h, scene_of_points({point(2, {height})}, {floor}, {gravity({-10})}));
 }
 
 // Height of a ball dropped from h0 under gravity g: first fall t1 = sqrt(2 h0/g), then flights k of 2 e^k t1,
@@ -82,15 +79,11 @@ TEST(BouncingBall, KeepsTheRestitutionToTheKthImpact) {
   }
 }
 
-std::string block(const std::string& position, const std::string& velocity, double h,
-                  const std::string& gravity, const std::string& normal, double friction) {
-  const std::string d = std::to_string(1 + std::count(position.begin(), position.end(), ','));
-  return R"({"model": {"type": "points", "dimension": )" + d + R"(, "points": [{"mass": 3.0, "position": )" +
-         position + R"(, "velocity": )" + velocity + R"(}]}, "time": {"dt": )" + number(h) +
-         R"(, "end": 1.0}, "loads": [{"type": "gravity", "acceleration": )" + gravity +
-         R"(}], "interfaces": [{"law": "coulomb", "parameters": {"friction": )" + number(friction) +
-         R"(}, "nodes": "all", "obstacle": {"type": "plane", "point": )" + position + R"(, "normal": )" +
-         normal + "}}]}";
+json sliding(const Numbers& velocity, double h, const Numbers& weight, const Numbers& normal,
+             double friction) {
+  const Numbers origin(velocity.size());
+  const json floor = law_on("all", plane(origin, normal), "coulomb", {{"friction", friction}});
+  return until(1, h, scene_of_points({point(3, origin, velocity)}, {floor}, {gravity(weight)}));
 }
 
 // Stops after v0^2/(2 mu g) along its direction. The first step sees gravity from half a step before, so the
@@ -100,8 +93,7 @@ TEST(SlidingBlock, StopsAtItsDistanceAndKeepsItsDirection) {
   for (double h = 7e-3; h > 2e-4; h /= 2.0) {
     double error = 0.0;
     for (const double friction : {0.4, 0.43, 0.47, 0.51}) {
-      auto [scene, integrator] = run_to_end(
-          block("[0.0, 0.0, 0.0]", "[1.2, 1.6, 0.0]", h, "[0.0, 0.0, -10.0]", "[0.0, 0.0, 1.0]", friction));
+      auto [scene, integrator] = run_to_end(sliding({1.2, 1.6, 0}, h, {0, 0, -10}, {0, 0, 1}, friction));
       const Dofs& u = integrator.displacement();
       // Rounding of up to 4600 sums below 0.5.
       EXPECT_NEAR(u[0] * 1.6, u[1] * 1.2, 4600 * 0.5 * 2.2e-16) << "h " << h << ", friction " << friction;
@@ -118,10 +110,9 @@ TEST(SlidingBlock, StopsAtItsDistanceAndKeepsItsDirection) {
 // On an incline a block sticks for tan(theta) <= mu, else accelerates at g (sin - mu cos).
 TEST(SlidingBlock, OnAnInclineSticksOrAccelerates) {
   const double angle = 0.5, h = 1e-3;
-  const std::string normal = "[" + number(-std::sin(angle)) + ", " + number(std::cos(angle)) + "]";
   for (const double friction : {0.3, 0.54, 0.55, 0.8}) {
     auto [scene, integrator] =
-        run_to_end(block("[0.0, 0.0]", "[0.0, 0.0]", h, "[0.0, -10.0]", normal, friction));
+        run_to_end(sliding({0, 0}, h, {0, -10}, {-std::sin(angle), std::cos(angle)}, friction));
     const double down =
         -(integrator.velocity()[0] * std::cos(angle) + integrator.velocity()[1] * std::sin(angle));
     const bool sticks = std::tan(angle) <= friction;
@@ -133,12 +124,11 @@ TEST(SlidingBlock, OnAnInclineSticksOrAccelerates) {
 
 // A plane that moves carries a resting point along, also through a path; the point's gap stays closed.
 TEST(MovingPlane, CarriesItsPoint) {
-  for (const std::string motion : {R"("velocity": [0.5])", R"("path": [[0.0, 0.0], [2.0, 1.0]])"}) {
+  for (const char* motion : {R"({"velocity": [0.5]})", R"({"path": [[0, 0], [2, 1]]})"}) {
+    json moving = ground(1);
+    moving.update(json::parse(motion));
     auto [scene, integrator] = run_to_end(
-        R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1.0, "position": [0.0]}]},
-      "time": {"dt": 1e-3, "end": 1.0}, "loads": [{"type": "gravity", "acceleration": [-10.0]}],
-      "interfaces": [{"law": "contact", "nodes": [0], "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0], )" +
-        motion + "}}]}");
+        until(1, 1e-3, scene_of_points({point(1, {0})}, {law_on({0}, moving, "contact")}, {gravity({-10})})));
     EXPECT_NEAR(integrator.displacement()[0], 0.5, 2e-3) << "motion " << motion;
     EXPECT_NEAR(integrator.velocity()[0], 0.5, 1e-12) << "motion " << motion;
     EXPECT_LE(integrator.energy().balance_error, 1e-12) << "motion " << motion;
@@ -147,13 +137,9 @@ TEST(MovingPlane, CarriesItsPoint) {
 
 // Over all nodes and steps, not the last of them.
 TEST(Penetration, IsTheLargestOfAll) {
-  auto [scene, integrator] = run_to_end(
-      R"({"model": {"type": "points", "dimension": 1,
-                    "points": [{"mass": 1, "position": [0.1], "velocity": [-3.1]}, {"mass": 1, "position": [-0.3]},
-                               {"mass": 1, "position": [5]}, {"mass": 1, "position": [-0.1]}]},
-      "time": {"dt": 0.1, "end": 0.5},
-      "interfaces": [{"law": "contact", "nodes": [0, 1, 2, 3], "parameters": {"activation": "moreau"},
-                      "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})");
+  const std::vector<json> points{point(1, {0.1}, {-3.1}), point(1, {-0.3}), point(1, {5}), point(1, {-0.1})};
+  auto [scene, integrator] = run_to_end(until(
+      0.5, 0.1, scene_of_points(points, {law_on("all", ground(1), "contact", {{"activation", "moreau"}})})));
   EXPECT_NEAR(integrator.tally().penetration_max, 0.3, 1e-15);
 }
 
@@ -161,14 +147,11 @@ TEST(Penetration, IsTheLargestOfAll) {
 // - e v^- for the plane's velocity w in the step to come.
 TEST(MovingPlane, CountsWithItsVelocityBeforeAndAfterAKink) {
   for (const double w : {-0.3, 0.4}) {
-    auto [scene, integrator] = run_to_end(
-        R"({"model": {"type": "points", "dimension": 1,
-                      "points": [{"mass": 1.0, "position": [0.2495], "velocity": [-1.0]}]},
-      "time": {"dt": 1e-3, "end": 0.3}, "loads": [],
-      "interfaces": [{"law": "contact", "nodes": [0], "parameters": {"restitution": 0.5, "activation": "moreau"},
-                      "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0],
-                                   "path": [[0.0, 0.0], [0.25, 0.0], [1.25, )" +
-        number(w) + "]]}}]}");
+    json wall = ground(1);
+    wall["path"] = {{0, 0}, {0.25, 0}, {1.25, w}};
+    const json law = law_on({0}, wall, "contact", {{"restitution", 0.5}, {"activation", "moreau"}});
+    auto [scene, integrator] =
+        run_to_end(until(0.3, 1e-3, scene_of_points({point(1, {0.2495}, {-1})}, {law})));
     EXPECT_NEAR(integrator.velocity()[0], w + 0.5, 1e-12) << w;
     EXPECT_LE(integrator.energy().balance_error, 1e-12) << "w " << w;
   }
@@ -177,13 +160,10 @@ TEST(MovingPlane, CountsWithItsVelocityBeforeAndAfterAKink) {
 // A point in the corner of two planes that are not at right angles: each impulse moves it along the other
 // plane, and the sweep over both must leave it at rest.
 TEST(Corner, OfTwoPlanesHoldsAPoint) {
-  auto [scene, integrator] = run_to_end(R"({"model": {"type": "points", "dimension": 2,
-      "points": [{"mass": 1.0, "position": [0.0, 0.0], "velocity": [-1.0, -2.0]}]},
-    "time": {"dt": 1e-3, "end": 0.1}, "loads": [{"type": "gravity", "acceleration": [0.0, -10.0]}],
-    "interfaces": [{"law": "coulomb", "name": "floor", "parameters": {"friction": 0.1}, "nodes": [0],
-                    "obstacle": {"type": "plane", "point": [0.0, 0.0], "normal": [0.0, 1.0]}},
-                   {"law": "coulomb", "name": "wall", "parameters": {"friction": 0.1}, "nodes": [0],
-                    "obstacle": {"type": "plane", "point": [0.0, 0.0], "normal": [0.8, -0.6]}}]})");
+  const json floor = law_on({0}, ground(2), "coulomb", {{"friction", 0.1}}),
+             wall = law_on({0}, plane({0, 0}, {0.8, -0.6}), "coulomb", {{"friction", 0.1}});
+  auto [scene, integrator] = run_to_end(
+      until(0.1, 1e-3, scene_of_points({point(1, {0, 0}, {-1, -2})}, {floor, wall}, {gravity({0, -10})})));
   EXPECT_LE(integrator.velocity().norm(), 1e-12);
   EXPECT_GT(integrator.tally().sweeps_max, 2);
   EXPECT_LE(integrator.tally().coupling_residual_max, 1e-14);
@@ -194,17 +174,13 @@ TEST(Corner, OfTwoPlanesHoldsAPoint) {
 TEST(Shock, EntersExactlyOneStep) {
   for (const double h : {0.1, 1e-3, 7e-4, 1.0 / 3.0})
     for (int n = 1; n <= 300; n += 7) {
-      auto [scene, integrator] = simulation_of(
-          R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1.0, "position": [9.0]}]},
-        "time": {"dt": )" +
-          number(h) + R"(, "end": )" + number(310 * h) +
-          R"(}, "loads": [{"type": "shock", "nodes": [0], "time": )" + number(n * h) +
-          R"(, "impulse": [1.0]}], "interfaces": []})");
+      auto [scene, integrator] =
+          simulation_of(until(310 * h, h, scene_of_points({point(1, {9})}, {}, {shock({0}, n * h, {1})})));
       while (integrator.steps() < n - 1) integrator.step();
       EXPECT_EQ(integrator.velocity()[0], 0.0) << "n " << n;
       integrator.step();
       EXPECT_EQ(integrator.velocity()[0], 1.0) << "n " << n;
-      while (integrator.steps() < 310) integrator.step();
+      run_to_end(integrator, scene);
       EXPECT_EQ(integrator.velocity()[0], 1.0) << "n " << n;
     }
 }

@@ -216,14 +216,9 @@ TEST(ProximityFilter, LeavesOutBondsThatBroke) {
 TEST(ProximityFilter, SeesBothBodiesFly) {
   for (int steps = 1; steps < 80; ++steps) {
     const double apart = 2e-3 * (steps - 0.3);
-    const json scene = json::parse(
-        R"({"model": {"type": "points", "dimension": 1,
-                      "points": [{"mass": 1, "position": [0], "velocity": [1]},
-                                 {"mass": 1, "position": [)" +
-        number(apart) + R"(], "velocity": [-1]}]},
-        "time": {"dt": 0.001, "end": 0.1},
-        "interfaces": [{"law": "contact", "parameters": {"restitution": 1.0}, "nodes": [1],
-                        "against": {"nodes": [0], "normal": [1]}}]})");
+    const json law = law_between({1}, {{"nodes", {0}}, {"normal", {1}}}, "contact", {{"restitution", 1}});
+    const json scene =
+        until(0.1, 0.001, scene_of_points({point(1, {0}, {1}), point(1, {apart}, {-1})}, {law}));
     expect_same_bits(scene);
     if (HasFailure()) return;
   }
@@ -249,14 +244,11 @@ TEST(ProximityFilter, SeesWhatAnotherInterfaceThrows) {
   }
 }
 
-json soft_block(const char* name, const json& corner, const json& size, const json& elements,
-                const json& velocity) {
-  return {{"name", name},
-          {"corner", corner},
-          {"size", size},
-          {"elements", elements},
-          {"velocity", velocity},
-          {"material", {{"type", "neo_hookean"}, {"young", 1e3}, {"poisson", 0.3}, {"density", 1.0}}}};
+json soft_block(const char* name, const Triple& corner, const Triple& size,
+                const std::array<int, 3>& elements, const Triple& velocity) {
+  json soft = elastic(1e3, 0.3, 1);
+  soft["type"] = "neo_hookean";
+  return block(name, corner, size, elements, soft, velocity);
 }
 
 // A plate turns over below a block that is far off and flies away from it: now the block is behind the
@@ -264,24 +256,15 @@ json soft_block(const char* name, const json& corner, const json& size, const js
 // holds for as long as the surface is not looked for again, no longer.
 TEST(ProximityFilter, SeesASurfaceTurnItsBack) {
   constexpr double rate = 10.0, mass = 0.025;  // of a node
-  json loads = json::array();
+  json source =
+      scene_of_blocks({soft_block("plate", {-0.5, -0.5, -0.1}, {1, 1, 0.2}, {1, 1, 1}, {0, 0, 0}),
+                       soft_block("far", {-0.05, -0.05, 30}, {0.1, 0.1, 0.1}, {1, 1, 1}, {0, 0, 1})},
+                      {law_between("far.z_min", {{"surface", "plate.z_max"}}, "contact")});
   for (int node = 0; node < 8; ++node) {
     const double x = node % 2 - 0.5, z = 0.2 * (node / 4 - 0.5);
-    loads.push_back({{"type", "shock"},
-                     {"nodes", {node}},
-                     {"time", 0.0005},
-                     {"impulse", {mass * rate * z, 0.0, -mass * rate * x}}});
+    source["loads"].push_back(shock({node}, 0.0005, {mass * rate * z, 0.0, -mass * rate * x}));
   }
-  const Tally tally = expect_same_bits(
-      {{"model",
-        {{"type", "blocks"},
-         {"blocks",
-          {soft_block("plate", {-0.5, -0.5, -0.1}, {1, 1, 0.2}, {1, 1, 1}, {0, 0, 0}),
-           soft_block("far", {-0.05, -0.05, 30}, {0.1, 0.1, 0.1}, {1, 1, 1}, {0, 0, 1})}}}},
-       {"time", {{"dt", 1e-3}, {"end", 0.4}}},
-       {"loads", loads},
-       {"interfaces",
-        {{{"law", "contact"}, {"nodes", "far.z_min"}, {"against", {{"surface", "plate.z_max"}}}}}}});
+  const Tally tally = expect_same_bits(until(0.4, 1e-3, source));
   EXPECT_GT(tally.skipped, 100);
   EXPECT_GT(tally.status_counts[ILAW_CLOSED], 0);
 }
@@ -294,31 +277,20 @@ TEST(ProximityFilter, KeepsTheOrderOfSharedNodes) {
   std::int64_t skipped = 0;
   for (int k = 0; k < 12 && !HasFailure(); ++k) {
     const double x = draw(-0.2, 0.4), y = draw(-0.2, 0.4);
-    const json thrown = {draw(-10.0, 10.0), draw(-10.0, 10.0), draw(-10.0, -1.0)};
-    json scene = {{"model",
-                   {{"type", "blocks"},
-                    {"blocks",
-                     {soft_block("lower", {0, 0, 0}, {1, 1, 0.3}, {3, 4, 1}, {0, 0, 0}),
-                      soft_block("far", {x, y, 4}, {0.7, 0.8, 0.4}, {4, 3, 2}, {0, 0, -1}),
-                      soft_block("near", {x, y, 0.35}, {0.7, 0.8, 0.4}, {4, 3, 2}, thrown)}}}},
-                  {"time", {{"cfl", 0.7}, {"end", 0.2}}},
-                  {"interfaces", json::array()}};
+    const Triple thrown{draw(-10.0, 10.0), draw(-10.0, 10.0), draw(-10.0, -1.0)};
+    json scene =
+        until_at_cfl(0.2, 0.7,
+                     scene_of_blocks({soft_block("lower", {0, 0, 0}, {1, 1, 0.3}, {3, 4, 1}, {0, 0, 0}),
+                                      soft_block("far", {x, y, 4}, {0.7, 0.8, 0.4}, {4, 3, 2}, {0, 0, -1}),
+                                      soft_block("near", {x, y, 0.35}, {0.7, 0.8, 0.4}, {4, 3, 2}, thrown)},
+                                     "[]"));
     json nodes = json::array();
     const Scene model = scene_of(scene);
     for (const char* face : {"far.z_min", "near.z_min"})
       for (const int node : model.model->sets().at(face).nodes) nodes.push_back(node);
-    scene["interfaces"] = {
-        {{"name", "between"},
-         {"law", "coulomb"},
-         {"parameters", {{"friction", 0.3}}},
-         {"nodes", nodes},
-         {"against", {{"surface", "lower.z_max"}}}},
-        {{"name", "floor"},
-         {"law", "coulomb"},
-         {"parameters", {{"friction", 0.3}}},
-         {"nodes", "lower.z_min"},
-         {"obstacle",
-          {{"type", "plane"}, {"point", {0.0, 0.0, -0.05}}, {"normal", {draw(-0.3, 0.3), 0.0, 1.0}}}}}};
+    const json friction = {{"friction", 0.3}}, floor = plane({0, 0, -0.05}, {draw(-0.3, 0.3), 0, 1});
+    scene["interfaces"] = {law_between(nodes, {{"surface", "lower.z_max"}}, "coulomb", friction),
+                           law_on("lower.z_min", floor, "coulomb", friction)};
     skipped += expect_same_bits(scene).skipped;
   }
   EXPECT_GT(skipped, 1000);

@@ -9,20 +9,17 @@ namespace ilaw::host::testing {
 namespace {
 
 // A scene of one mass that slides on a floor, under the law.
-std::string sliding_mass(const std::string& law, const std::string& parameters) {
-  return R"({"model": {"type": "points", "dimension": 3,
-               "points": [{"mass": 1, "position": [0, 0, 0], "velocity": [0.1, 0, 0]}]},
-             "time": {"dt": 0.01, "end": 0.02}, "output": {"watch": [0]},
-             "interfaces": [{"law": ")" +
-         law + R"(", "parameters": )" + parameters + R"(, "nodes": "all",
-                             "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})";
+json sliding_mass(const char* law, const json& parameters) {
+  const json floor = law_on("all", ground(3), law, parameters);
+  json scene = until(0.02, 0.01, scene_of_points({point(1, {0, 0, 0}, {0.1, 0, 0})}, {floor}));
+  scene["output"]["watch"] = {0};
+  return scene;
 }
 
 // mean_opening and what is named history stay in the state and out of the table.
 TEST(Program, HistoryLeavesOutTheLawsBookkeeping) {
   const auto folder = fresh_folder();
-  ASSERT_EQ(
-      run_scene(json::parse(sliding_mass("cohesive", R"({"strength": 1, "toughness": 1})")), folder).code, 0);
+  ASSERT_EQ(run_scene(sliding_mass("cohesive", {{"strength", 1}, {"toughness", 1}}), folder).code, 0);
   const std::string history = text_of(folder / "history.csv");
   EXPECT_EQ(
       history.substr(0, history.find('\n')),
@@ -74,7 +71,7 @@ TEST(Summary, TellsTheInterfacesShareAndMemory) {
 
 // Unit masses on springs of k = 1e4, stable up to 2/sqrt(k H) = 0.02 where explicit.
 json mass_on_spring(const char* integration, double dt) {
-  json scene = json::parse(sliding_mass("penalty", R"({"stiffness": 1e4})"));
+  json scene = sliding_mass("penalty", {{"stiffness", 1e4}});
   scene["model"]["points"][0]["velocity"] = {0, 0, -1};
   scene["time"] = {{"dt", dt}, {"end", 5 * dt}};
   scene["interfaces"][0]["parameters"]["integration"] = integration;
@@ -100,7 +97,7 @@ TEST(Summary, WarnsOfAnExplicitSpringThatIsTooStiff) {
 TEST(Clock, StepsThatAreTimedStandForThoseThatAreNot) {
   double share = 0.0;
   for (int attempt = 0; attempt < 5 && share < 0.25; ++attempt) {  // others may hold the processor
-    auto [scene, integrator] = simulation_of(mass_on_spring("implicit", 1e-5).dump());
+    auto [scene, integrator] = simulation_of(mass_on_spring("implicit", 1e-5));
     const auto told = [&integrator = integrator] {
       const PhaseSeconds seconds = integrator.seconds();
       return seconds.interfaces + seconds.internal_forces;

@@ -236,12 +236,7 @@ TEST(TurningObstacle, IsRefusedWithPointerFoundAndAllowed) {
     json source = dropped(wheel(dimension == 2 ? "disc" : "sphere", 1.0), dimension, 0.3, 0.5);
     source["time"]["dt"] = 0.01;
     source["interfaces"][0]["obstacle"].merge_patch(change);
-    try {
-      scene_of(source);
-    } catch (const SceneError& error) {
-      return std::string(error.what());
-    }
-    return std::string("not refused");
+    return refusal_of(source);
   };
   const std::string obstacle = "/interfaces/0/obstacle";
   EXPECT_EQ(with(json::object()), "not refused");

@@ -97,6 +97,16 @@ def place_of(mutant, text):
     return begin, begin + len(mutant["from"])
 
 
+def has_bare_comma(text):
+    """Whether a comma stands outside all brackets, where it would be an operator."""
+    depth = 0
+    for letter in text:
+        depth += (letter in "([{") - (letter in ")]}")
+        if letter == "," and depth == 0:
+            return True
+    return False
+
+
 def switched(mutant):
     """Both forms of an expression, or of a statement."""
     number, before, after = mutant["number"], mutant["from"], mutant["to"]
@@ -105,6 +115,8 @@ def switched(mutant):
     for text in (before, after):
         if text.count("(") != text.count(")"):
             raise ValueError(f"{mutant['name']}: parentheses do not balance: {text}")
+        if not before.endswith(";") and has_bare_comma(text):
+            raise ValueError(f"{mutant['name']}: two operands, apart by a comma: {text}")
     if before.endswith(";"):
         return f"{{ if (ilaw_mutant == {number}) {{ {after} }} else {{ {before} }} }}"
     return f"(ilaw_mutant == {number} ? ({after}) : ({before}))"
@@ -182,16 +194,30 @@ def caught(mutant, near, usual):
     return False, ran
 
 
-def table(counts):
-    """Rows with the mutants and the caught ones of each area."""
-    whole = [sum(column) for column in zip(*counts.values())]
-    rows = [f"| {area} | {mutants} | {found} |" for area, (mutants, found) in [*sorted(counts.items()), ("all", whole)]]
-    return "\n".join(["| area | mutants | caught |", "| --- | --- | --- |", *rows])
+class Score(typing.NamedTuple):
+    run: int
+    caught: int
+    commit: str  # with its date
 
 
-def counts_on_page():
-    rows = re.findall(r"^\| (\w+) \| (\d+) \| (\d+) \|$", PAGE.read_text(), re.MULTILINE)
-    return {area: (int(mutants), int(found)) for area, mutants, found in rows if area in AREAS}
+def commit_here():
+    return subprocess.run(["git", "log", "-1", "--format=%cs, %h"], cwd=SOURCE, check=True, capture_output=True,
+                          text=True).stdout.strip()
+
+
+def table(scores, everything):
+    """A row per area: its mutants in the list, those that ran, those caught, and the commit they ran on."""
+    listed = collections.Counter(mutant["area"] for mutant in everything if mutant["area"] in scores)
+    rows = [f"| {area} | {listed[area]} | {score.run} | {score.caught} | {score.commit} |"
+            for area, score in sorted(scores.items())]
+    run, caught_ones = (sum(column) for column in list(zip(*scores.values()))[:2])
+    rows.append(f"| all | {sum(listed.values())} | {run} | {caught_ones} | |")
+    return "\n".join(["| area | mutants | run | caught | commit |", "| --- | --- | --- | --- | --- |", *rows])
+
+
+def scores_on_page():
+    rows = re.findall(r"^\| (\w+) \| \d+ \| (\d+) \| (\d+) \| (.+) \|$", PAGE.read_text(), re.MULTILINE)
+    return {area: Score(int(run), int(found), commit) for area, run, found, commit in rows if area in AREAS}
 
 
 def read_mutants():
@@ -223,6 +249,7 @@ def main():
 
     chosen = [mutant for mutant in everything[-options.last:]
               if options.only in mutant["name"] and mutant["area"] in (options.area or AREAS)]
+    commit = commit_here()
     tests = sorted({test for mutant in chosen for test in tests_of(mutant, options.near, {})})
     copy_tree({file: with_mutants(file, mutants) for file, mutants in by_file(chosen).items()})
     build({test.partition(":")[0] for test in tests}, options.jobs)
@@ -237,12 +264,12 @@ def main():
             score[mutant["area"]].append(found)
             print(f"{'caught' if found else 'SURVIVED':8}  {mutant['area']:7}  {mutant['name']}: {', '.join(ran)}",
                   flush=True)
-    counts = {area: (len(found), sum(found)) for area, found in score.items()}
-    print(table(counts))
+    scores = {area: Score(len(found), sum(found), commit) for area, found in score.items()}
+    print(table(scores, everything))
     if options.table:
-        whole = table(counts_on_page() | counts)
+        whole = table(scores_on_page() | scores, everything)
         marked_part.write(PAGE, "<!-- score of the mutants -->", "<!-- end of the score -->", whole)
-    return 0 if all(found >= GOAL * mutants for mutants, found in counts.values()) else 1
+    return 0 if all(one.caught >= GOAL * one.run for one in scores.values()) else 1
 
 
 if __name__ == "__main__":
