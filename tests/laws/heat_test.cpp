@@ -226,7 +226,9 @@ TEST(HeatOfBonds, IsFrictionWithoutRupture) {
       EXPECT_NEAR(heat / friction, partition, 1e-12) << at;
       EXPECT_NEAR(depth / (wear_coefficient * force / area * rubbed), 1.0, 1e-9) << at;
       EXPECT_NEAR((friction + rupture + lost + node.energy[ILAW_ENERGY_STORED]) / work, 1.0, 1e-9) << at;
-      if (law.law == "cohesive") EXPECT_NEAR(rupture / (toughness * area), 1.0, 1e-9) << at;
+      if (law.law == "cohesive") {
+        EXPECT_NEAR(rupture / (toughness * area), 1.0, 1e-9) << at;
+      }
     }
 }
 
