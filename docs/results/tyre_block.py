@@ -61,8 +61,8 @@ def run(program, temperature, speed, cfl=0.9):
     return found, summary
 
 
-def off_the_page(found):
-    """The largest difference of a node's mu at the end of a run from the page's formula at its speed and temperature."""
+def error_of_friction(found):
+    """The largest difference of a node's mu at the end of a run from the law's formula at its speed and temperature."""
     page = master_curve(shift(found["temperature"][-1]) * found["slip"][-1])
     return np.abs(found["node_mu"][-1] - page).max()
 
@@ -72,7 +72,7 @@ def line(temperature, found, summary):
     coldest, warmest = found["temperature"][-1].min(), found["temperature"][-1].max()
     energy, heat = summary["energy"], summary["heat"]
     wear = summary["interfaces"][0]["amounts"]["wear"] / 4  # of four nodes
-    return (f"| {temperature:g} | {coldest:.1f} to {warmest:.1f} | {found['mu'][-1]:.4f} | {off_the_page(found):.0e} | "
+    return (f"| {temperature:g} | {coldest:.1f} to {warmest:.1f} | {found['mu'][-1]:.4f} | {error_of_friction(found):.0e} | "
             f"{heat['friction']:.3f} | {heat['stored']:.3f} | "
             f"{wear * 1e9:.1f} | {heat['friction'] / energy['dissipated_friction'] - 1:.0e} | {heat['balance_error']:.0e} | "
             f"{energy['balance_error']:.0e} |")  # fmt: skip
@@ -108,7 +108,7 @@ def main():
     given = parser_of(__doc__).parse_args()
     speeds = SPEEDS if given.picture else (TABLE_SPEED,)
     runs = {(temperature, speed): run(given.program, temperature, speed) for temperature in TEMPERATURES for speed in speeds}
-    print("| start [K] | surface [K] | friction | nodes off the page | heat [J] | in the block [J] | wear [nm] | "
+    print("| start [K] | surface [K] | friction | error of friction | heat [J] | in the block [J] | wear [nm] | "
           "heat / friction - 1 | heat | energy |")  # fmt: skip
     print("| --- " * 10 + "|")
     for temperature in TEMPERATURES:

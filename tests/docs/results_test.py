@@ -57,7 +57,7 @@ class TyreBlock(unittest.TestCase):
             coldest, friction, off, heat, stored, wear = row("tyre_block", f"{temperature:g}")
             self.assertAlmostEqual(found["temperature"][-1].min(), coldest, delta=0.06)
             self.assertAlmostEqual(found["mu"][-1], friction, delta=1e-4)
-            self.assertLess(tyre_block.off_the_page(found), off + 6e-5)
+            self.assertLess(tyre_block.error_of_friction(found), off + 6e-5)
             self.assertAlmostEqual(summary["heat"]["friction"], heat, delta=6e-4)
             self.assertAlmostEqual(summary["heat"]["stored"], stored, delta=6e-4)
             self.assertAlmostEqual(summary["interfaces"][0]["amounts"]["wear"] / 4 * 1e9, wear, delta=0.06)
