@@ -25,6 +25,7 @@ std::vector<double> shares_of(const NodeSet& set, const std::string& pointer) {
 
 std::vector<double> masses_of(const std::vector<int>& nodes, const Model& model) {
   std::vector<double> masses;
+  masses.reserve(nodes.size());
   for (const int node : nodes) masses.push_back(model.mass()[Eigen::Index{node} * model.dimension()]);
   return masses;
 }
