@@ -71,12 +71,12 @@ struct penalty {
 
   struct state {
     V indentation;
-    vector<V> spring;  // its normal component is always zero
+    tangential_vector<V> spring;
     V withheld;
   };
   static constexpr state_variable<state> state_variables[] = {
       {&state::indentation, "indentation", "m", "Of the implicit normal spring since it closed.", false, 0.0},
-      {&state::spring, "spring", "m", "Elastic part of the slip; normal component zero."},
+      {&state::spring, "spring", "m", "Elastic part of the slip."},
       {&state::withheld, "withheld", "J", "Work that restitution gives back unless the spring opens.", false,
        0.0}};
 
@@ -274,7 +274,7 @@ struct penalty {
       node.tangential_gain = tangential - tangent.energy(before, before);
       node.stored = normal + tangential;
     }
-    node.state = {indentation, slip, withheld};
+    node.state = {indentation, {slip.t1, slip.t2}, withheld};
     return status_of_pressed(node, slides);
   }
   // At most what lifts the zero of the spring, in the middle of the next step, back to the surface.
@@ -307,7 +307,7 @@ struct penalty {
       next = kept + strains * (node.v_free + node.delassus.times(node.impulse));
     }
     node.refuse((node.state.indentation != 0.0) | (node.state.withheld != 0.0), refusal::impossible_state);
-    node.state = {0.0, {0.0, next.t1, next.t2}, 0.0};
+    node.state = {0.0, {next.t1, next.t2}, 0.0};
     if (node.wants_energy) {
       // Levels as in the discrete energy of the central-difference scheme, 1/2 k g_n g_{n+1}; see penalty.md.
       const vector<V> v = node.v_free + node.delassus.times(node.impulse), mean = node.v_previous + v;

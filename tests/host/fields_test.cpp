@@ -163,7 +163,7 @@ TEST(Fields, HoldVectorsOfTheState) {
   const Field spring(*grid, "spring", 3);
   EXPECT_EQ(spring.at(0, 0), 0.0);
   EXPECT_NE(spring.at(0, 1), 0.0);
-  EXPECT_EQ(spring.at(0, 1), scene.interfaces[0]->state(0, 2));  // behind indentation and normal
+  EXPECT_EQ(spring.at(0, 1), scene.interfaces[0]->state(0, 1));  // behind the indentation
   EXPECT_EQ(spring.at(0, 2), 0.0);
 }
 
