@@ -92,14 +92,14 @@ TEST(Compression, LinearSolvesItsEquation) {
       const double previous = node.v_previous[0];
       const double x = k % 3 ? h * scale * random.decades(3.0) : 0.0;
       const double withheld = e < 1.0 && k % 2 ? 0.5 * stiffness * x * x * random.decades(3.0) : 0.0;
-      node.state = {x, 0.0, 0.0, 0.0, withheld};
+      node.state = {x, 0.0, 0.0, withheld};
       ASSERT_EQ(node.step({v, 0.3 * scale, 0.0}), ILAW_OK) << node.report.reason;
       expect_solution(
           {x, v, previous, delassus, h, stiffness, 1.0L, damping, 1.0L / (1.0L + e) - 0.5L, withheld},
           node.r[0], 2e-14);
       const bool turns = withheld > 0.0 && node.v[0] < previous;
-      returned += turns && node.state[4] > 0.0;
-      spent += turns && node.state[0] > 0.0 && node.state[4] == 0.0;
+      returned += turns && node.state[3] > 0.0;
+      spent += turns && node.state[0] > 0.0 && node.state[3] == 0.0;
       closed += node.r[0] > 0.0;
       opening += node.r[0] > 0.0 && node.state[0] == 0.0;
     }

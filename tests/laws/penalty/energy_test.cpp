@@ -9,7 +9,7 @@
 namespace ilaw::testing {
 namespace {
 
-// Parameters of one draw and what the page says is stored; a state is x, the vector xi and W.
+// Parameters of one draw and what the page says is stored; a state is x, xi and W.
 struct Springs {
   double stiffness, exponent, tangential, friction;
 
@@ -18,7 +18,7 @@ struct Springs {
   }
   double tangent(const std::vector<double>& state) const {
     double square = 0.0;
-    for (std::size_t k = 2; k + 1 < state.size(); ++k) square += state[k] * state[k];
+    for (std::size_t k = 1; k + 1 < state.size(); ++k) square += state[k] * state[k];
     return tangential < inf_value ? 0.5 * tangential * square : 0.0;
   }
 };
@@ -100,7 +100,7 @@ class ImplicitEnergy : public ::testing::TestWithParam<std::tuple<std::uint32_t,
       scale += std::abs(node.r[c]) * (std::abs(previous[c]) + std::abs(node.v[c]) + std::abs(node.v_free[c]));
     const double slack = 1e-12 * scale;
     ASSERT_GE(impact, -slack) << "draw " << seed << ", x " << before[0] << " -> " << node.state[0];
-    ASSERT_GE(dissipated, -slack) << "draw " << seed << ", slip " << before[2] << " -> " << node.state[2];
+    ASSERT_GE(dissipated, -slack) << "draw " << seed << ", slip " << before[1] << " -> " << node.state[1];
     ASSERT_NEAR(node.energy[ILAW_ENERGY_IMPACT], impact, slack) << "draw " << seed;
     ASSERT_NEAR(node.energy[ILAW_ENERGY_FRICTION], dissipated, slack) << "draw " << seed;
     ASSERT_NEAR(node.energy[ILAW_ENERGY_STORED], normal + tangent, 1e-14 * (normal + tangent));
@@ -154,7 +154,7 @@ TEST_P(ImplicitEnergy, GivesBackWhatItDoesNotDissipate) {
       node.gap = scale * random();
       node.state.assign(node.state.size(), 0.0);
       if (!rigid && k % 4 != 0) node.state[0] = h * std::abs(random()) * random.decades(1.0);
-      for (std::size_t t = 2; t + 1 < node.state.size() && !rigid_tangent; ++t) node.state[t] = h * random();
+      for (std::size_t t = 1; t + 1 < node.state.size() && !rigid_tangent; ++t) node.state[t] = h * random();
       if (numbers.contains("restitution") && k % 2 == 1)
         node.state.back() = springs.normal(node.state[0]) * random.decades(2.0);
       check(node, springs, 100 * instance + k);
