@@ -3,7 +3,7 @@
 //
 // Hexahedra have full 2x2x2 integration: it has no zero-energy modes, so no hourglass stiffness to choose,
 // whose value would show in every convergence table. They lock as Poisson's ratio goes to 1/2; with the
-// element's mean dilatation in place of that of each integration point they do not. Those of a box are alike:
+// element's mean dilatation in place of that of each integration point they do not. In a box all are equal:
 // shape gradients are computed once, and a linear box keeps one 24x24 stiffness.
 //
 // With mean dilatation a hexahedron has the mean of its element, a tetrahedron the means at its nodes: the

@@ -16,7 +16,7 @@ namespace ilaw::host {
 struct MeshTopology {
   std::vector<std::array<int, 8>> hexahedra;
   std::vector<std::array<int, 4>> tetrahedra;
-  // Of a box: the size of its hexahedra, which are all alike, and how many of them lie in a layer; two layers
+  // For a box alone: the size of its hexahedra, all alike, and how many of them lie in a layer; two layers
   // share no node unless they are neighbours.
   Eigen::Vector3d element_size = Eigen::Vector3d::Zero();
   std::size_t layer = 0;

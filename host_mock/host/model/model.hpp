@@ -57,7 +57,7 @@ class Model {
   int node_count() const { return static_cast<int>(nodes_.mass.size()) / nodes_.dimension; }
   const Dofs& mass() const { return nodes_.mass; }
   const Dofs& position() const { return nodes_.position; }
-  // Of a node, undeformed and displaced.
+  // The position of a node, undeformed and displaced.
   Vector position(int node) const { return of_node(position(), node); }
   Vector position(int node, const Dofs& u) const { return of_node(position(), node) + of_node(u, node); }
   const Dofs& initial_velocity() const { return nodes_.velocity; }
