@@ -47,11 +47,8 @@ struct checks<V, true> {
 template <class V, class Array>
 ILAW_KIT_INLINE void load_symmetric(full<V>& h, const Array& a, std::int64_t i) {
   if (a.count == 6) {
-    V c[6], unused = 0.0;
-    if (a.rows)
-      load_rows(c, a.at + 6 * i, unused);
-    else
-      load_numbers(c, a, i);
+    V c[6];
+    load_numbers(c, a, i);
     h.nn = c[0], h.t11 = c[1], h.t22 = c[2], h.n1 = c[3], h.n2 = c[4], h.t12 = c[5];
   } else {
     axis<V> d;

@@ -7,18 +7,18 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// ---- rows of two, three, four and six numbers to columns and back, in registers
+// ---- rows of two, three and four numbers to columns and back, in registers
 
 // A register as a host's array has it: floats are turned while they are narrow.
 using one_floats = float __attribute__((vector_size(4 * register_lanes)));
 template <class Number>
 using one_of = std::conditional_t<std::is_same_v<std::remove_const_t<Number>, float>, one_floats, one>;
 
-// Lanes of rows of so many numbers: which of three registers has the wanted numbers of a lane.
-template <int Numbers, int Group>
+// Rows of three: which of three registers has the wanted number of a row at this lane.
+template <int Column>
 constexpr int holder_of(int lane) {
   int vector = 0;
-  while ((vector * register_lanes + lane) % Numbers / (Numbers / 3) != Group) ++vector;
+  while ((vector * register_lanes + lane) % 3 != Column) ++vector;
   return vector;
 }
 // AVX-512 takes any lanes of two registers in one instruction; the others move lanes and blend.
@@ -30,8 +30,8 @@ ILAW_KIT_INLINE One column_of_three(One a, One b, One c, std::integer_sequence<i
   const One two = __builtin_shufflevector(a, b, (from(K) < 2 * lanes ? from(K) : 0)...);
   return __builtin_shufflevector(two, c, (from(K) < 2 * lanes ? K : from(K) - lanes)...);
 #else
-  const One two = __builtin_shufflevector(a, b, (holder_of<3, Column>(K) == 1 ? K + lanes : K)...);
-  const One all = __builtin_shufflevector(two, c, (holder_of<3, Column>(K) == 2 ? K + lanes : K)...);
+  const One two = __builtin_shufflevector(a, b, (holder_of<Column>(K) == 1 ? K + lanes : K)...);
+  const One all = __builtin_shufflevector(two, c, (holder_of<Column>(K) == 2 ? K + lanes : K)...);
   return __builtin_shufflevector(all, all, (3 * K + Column) % lanes...);
 #endif
 }
@@ -66,19 +66,6 @@ ILAW_KIT_INLINE One every_second(One a, One b, std::integer_sequence<int, K...>)
 template <int Half, class One, int... K>
 ILAW_KIT_INLINE One zipped(One a, One b, std::integer_sequence<int, K...>) {
   return __builtin_shufflevector(a, b, (Half * register_lanes / 2 + K / 2 + K % 2 * register_lanes)...);
-}
-
-// Rows of six: pairs as rows of three, then each register of pairs to its columns.
-template <int Group, class One, int... K>
-ILAW_KIT_INLINE One pairs_of_three(One a, One b, One c, std::integer_sequence<int, K...>) {
-  const One two = __builtin_shufflevector(a, b, (holder_of<6, Group>(K) == 1 ? K + register_lanes : K)...);
-  return __builtin_shufflevector(two, c, (holder_of<6, Group>(K) == 2 ? K + register_lanes : K)...);
-}
-template <int Column, class One, int... K>
-ILAW_KIT_INLINE One column_of_six(One low, One high, std::integer_sequence<int, K...>) {
-  constexpr int half = register_lanes / 2;
-  return __builtin_shufflevector(low, high,
-                                 (K / half * register_lanes + (6 * (K % half) + Column) % register_lanes)...);
 }
 
 // ---- registers in memory
@@ -168,7 +155,7 @@ ILAW_KIT_INLINE void store_bytes(V a, std::uint8_t* p) {
   }
 }
 
-// Registers of rows of N numbers, N of 2, 3, 4 and 6, to those of columns.
+// Registers of rows of N numbers, N of 2, 3 and 4, to those of columns.
 template <int N, class One>
 ILAW_KIT_INLINE void to_columns(const One (&in)[N], One (&out)[N]) {
   constexpr auto all = each_lane;
@@ -179,29 +166,17 @@ ILAW_KIT_INLINE void to_columns(const One (&in)[N], One (&out)[N]) {
     out[0] = column_of_three<0>(in[0], in[1], in[2], all);
     out[1] = column_of_three<1>(in[0], in[1], in[2], all);
     out[2] = column_of_three<2>(in[0], in[1], in[2], all);
-  } else if constexpr (N == 4) {
+  } else {
+    static_assert(N == 4);
     const One a = every_second<0>(in[0], in[1], all), b = every_second<1>(in[0], in[1], all);
     const One c = every_second<0>(in[2], in[3], all), d = every_second<1>(in[2], in[3], all);
     out[0] = every_second<0>(a, c, all);
     out[1] = every_second<0>(b, d, all);
     out[2] = every_second<1>(a, c, all);
     out[3] = every_second<1>(b, d, all);
-  } else {
-    const One p0 = pairs_of_three<0>(in[0], in[1], in[2], all),
-              q0 = pairs_of_three<0>(in[3], in[4], in[5], all);
-    const One p1 = pairs_of_three<1>(in[0], in[1], in[2], all),
-              q1 = pairs_of_three<1>(in[3], in[4], in[5], all);
-    const One p2 = pairs_of_three<2>(in[0], in[1], in[2], all),
-              q2 = pairs_of_three<2>(in[3], in[4], in[5], all);
-    out[0] = column_of_six<0>(p0, q0, all);
-    out[1] = column_of_six<1>(p0, q0, all);
-    out[2] = column_of_six<2>(p1, q1, all);
-    out[3] = column_of_six<3>(p1, q1, all);
-    out[4] = column_of_six<4>(p2, q2, all);
-    out[5] = column_of_six<5>(p2, q2, all);
   }
 }
-// And back, N of 2, 3 and 4.
+// And back.
 template <int N, class One>
 ILAW_KIT_INLINE void to_rows(const One (&in)[N], One (&out)[N]) {
   constexpr auto all = each_lane;
@@ -223,7 +198,7 @@ ILAW_KIT_INLINE void to_rows(const One (&in)[N], One (&out)[N]) {
   }
 }
 
-// Rows of N numbers, N of 2, 3, 4 and 6, from p on. found: times all numbers read, each in some lane; so
+// Rows of N numbers, N of 2, 3 and 4, from p on. found: times all numbers read, each in some lane; so
 // columns that nobody reads are never made.
 template <int N, class V, class Number>
 ILAW_KIT_INLINE void load_rows(V (&to)[N], const Number* p, V& found) {
@@ -314,13 +289,80 @@ ILAW_KIT_INLINE void store_vector(axis<V> a, const Array& to, std::int64_t i) {
   }
 }
 
-// N numbers that a law remembers: entry e of the host's state is numbers[e].
+// Longer rows: two of their numbers at a time, the last two perhaps once more.
+using pair_of_doubles = double __attribute__((vector_size(16)));
+using pair_of_floats = float __attribute__((vector_size(8)));
+template <class Number>
+using pair_of =
+    std::conditional_t<std::is_same_v<std::remove_const_t<Number>, float>, pair_of_floats, pair_of_doubles>;
+// Two numbers of every second row, side by side.
+template <int N, class Number>
+ILAW_KIT_INLINE one_of<Number> every_second_row(const Number* p) {
+  pair_of<Number> pair[register_lanes / 2];
+#pragma GCC unroll 4
+  for (int k = 0; k < register_lanes / 2; ++k) __builtin_memcpy(&pair[k], p + 2 * k * N, sizeof pair[k]);
+  if constexpr (register_lanes == 2) {
+    return pair[0];
+  } else if constexpr (register_lanes == 4) {
+    return __builtin_shufflevector(pair[0], pair[1], 0, 1, 2, 3);
+  } else {
+    const auto low = __builtin_shufflevector(pair[0], pair[1], 0, 1, 2, 3);
+    const auto high = __builtin_shufflevector(pair[2], pair[3], 0, 1, 2, 3);
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+}
+template <int N, class Number>
+ILAW_KIT_INLINE void put_every_second_row(one_of<Number> pairs, Number* p) {
+  pair_of<Number> pair[register_lanes / 2];
+  __builtin_memcpy(pair, &pairs, sizeof pairs);
+#pragma GCC unroll 4
+  for (int k = 0; k < register_lanes / 2; ++k) __builtin_memcpy(p + 2 * k * N, &pair[k], sizeof pair[k]);
+}
+// Squares of two by two lanes, turned about their diagonal: of pairs of even and odd rows to two columns, and
+// back. Which: the first result or the second.
+template <int Which, class One, int... K>
+ILAW_KIT_INLINE One turned(One a, One b, std::integer_sequence<int, K...>) {
+  return __builtin_shufflevector(a, b, (K - K % 2 + Which + K % 2 * register_lanes)...);
+}
+template <int N, class V, class Number>
+ILAW_KIT_INLINE void load_long_rows(V (&to)[N], const Number* p) {
+#pragma GCC unroll 4
+  for (int r = 0; r < V::size / register_lanes; ++r) {
+    const Number* const q = p + N * register_lanes * r;
+#pragma GCC unroll 8
+    for (int k = 0; k < N; k += 2) {
+      const int c = k + 2 <= N ? k : N - 2;
+      const auto even = every_second_row<N>(q + c), odd = every_second_row<N>(q + N + c);
+      to[c].v[r] = widened(turned<0>(even, odd, each_lane));
+      to[c + 1].v[r] = widened(turned<1>(even, odd, each_lane));
+    }
+  }
+}
+template <int N, class V, class Number>
+ILAW_KIT_INLINE void store_long_rows(const V (&a)[N], Number* p) {
+#pragma GCC unroll 4
+  for (int r = 0; r < V::size / register_lanes; ++r) {
+    Number* const q = p + N * register_lanes * r;
+#pragma GCC unroll 8
+    for (int k = 0; k < N; k += 2) {
+      const int c = k + 2 <= N ? k : N - 2;
+      const auto x = narrowed<Number>(a[c].v[r]), y = narrowed<Number>(a[c + 1].v[r]);
+      put_every_second_row<N>(turned<0>(x, y, each_lane), q + c);
+      put_every_second_row<N>(turned<1>(x, y, each_lane), q + N + c);
+    }
+  }
+}
+
+// N numbers of each node, in rows or columns.
 template <int N, class V, class Array>
 ILAW_KIT_INLINE void load_numbers(V (&to)[N], const Array& a, std::int64_t i) {
-  if constexpr (N == 2 || N == 3 || N == 4) {
+  if constexpr (N > 1) {
     if (a.rows) {
       V unused = 0.0;
-      load_rows(to, a.at + N * i, unused);
+      if constexpr (N <= 4 || lanes_of<V> == 1)
+        load_rows(to, a.at + N * i, unused);
+      else
+        load_long_rows(to, a.at + N * i);
       return;
     }
   }
@@ -329,8 +371,14 @@ ILAW_KIT_INLINE void load_numbers(V (&to)[N], const Array& a, std::int64_t i) {
 }
 template <int N, class V, class Array>
 ILAW_KIT_INLINE void store_numbers(const V (&a)[N], const Array& to, std::int64_t i) {
-  if constexpr (N == 2 || N == 3 || N == 4) {
-    if (to.rows) return store_rows(a, to.at + N * i);
+  if constexpr (N > 1) {
+    if (to.rows) {
+      if constexpr (N <= 4 || lanes_of<V> == 1)
+        store_rows(a, to.at + N * i);
+      else
+        store_long_rows(a, to.at + N * i);
+      return;
+    }
   }
 #pragma GCC unroll 16
   for (int c = 0; c < N; ++c) store(a[c], to.at + c * to.component + i);

@@ -8,10 +8,10 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// Whether an array of so many components may stay where it is; loops read no rows of five.
+// Whether an array of so many components may stay where it is.
 template <class Array>
 bool stays(const Array& a, int components) {
-  return a.node_stride == 1 || (a.node_stride == components && a.component_stride == 1 && components != 5);
+  return a.node_stride == 1 || (a.node_stride == components && a.component_stride == 1);
 }
 
 // Host: what the arrays of the batch hold. Number: what the loop reads; another type is converted by blocks.
@@ -57,9 +57,8 @@ class batch_walk {
     for (int k = 0; k < made_.states; ++k)
       if (made_.state_entries[k] < 0) return false;
     if (a.node_stride == 1) return true;
-    const bool is_short = made_.states == 2 || made_.states == 3 || made_.states == 4;
-    return is_short && made_.state_size == static_cast<std::uint64_t>(made_.states) &&
-           a.node_stride == made_.states && a.component_stride == 1;
+    return made_.state_size == static_cast<std::uint64_t>(made_.states) && a.node_stride == made_.states &&
+           a.component_stride == 1;
   }
   bool all_stay() const {
     bool stay = !converts && !b_.index && !b_.index64 && (!b_.status || b_.status_stride == 1) &&
