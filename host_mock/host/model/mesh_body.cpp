@@ -80,24 +80,29 @@ Eigen::Matrix<double, 1, 4> lumped_volumes(const Tetrahedron& element) {
   return Eigen::Matrix<double, 1, 4>::Constant(0.25 * element.volume);
 }
 
-// The largest eigenvalue of M^-1 K of an element, K column by column from the forces of unit displacements.
+// Of a symmetric matrix.
+double largest_eigenvalue(const Eigen::MatrixXd& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly)
+      .eigenvalues()
+      .maxCoeff();
+}
+
+// That of M^-1 K of an element, K column by column from the forces of unit displacements.
 template <int N, int P>
 double largest_eigenvalue(const SolidElement<N, P>& element, const Material& material, Element kind) {
   const Material linear{MaterialLaw::linear, material.young, material.poisson, material.density};
-  Eigen::Matrix<double, 3 * N, 3 * N> stiffness;
+  Eigen::MatrixXd stiffness(3 * N, 3 * N);
   for (Eigen::Index k = 0; k < 3 * N; ++k) {
     Eigen::Matrix<double, 3, N> u = Eigen::Matrix<double, 3, N>::Zero();
     u(k % 3, k / 3) = 1.0;
     const Eigen::Matrix<double, 3, N> force = DeformedElement<N, P>(element, u, linear, kind).force();
     stiffness.col(k) = Eigen::Map<const Eigen::Matrix<double, 3 * N, 1>>(force.data());
   }
-  Eigen::Matrix<double, 3 * N, 1> scale;
+  Eigen::VectorXd scale(3 * N);
   const Eigen::Matrix<double, 1, N> volumes = lumped_volumes(element);
   for (Eigen::Index k = 0; k < 3 * N; ++k) scale[k] = 1.0 / std::sqrt(material.density * volumes[k / 3]);
-  const Eigen::Matrix<double, 3 * N, 3 * N> scaled = scale.asDiagonal() * stiffness * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 3 * N, 3 * N>> modes(
-      0.5 * (scaled + scaled.transpose()), Eigen::EigenvaluesOnly);
-  return modes.eigenvalues().maxCoeff();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * stiffness * scale.asDiagonal();
+  return largest_eigenvalue(0.5 * (scaled + scaled.transpose()));
 }
 
 template <int N, int P>
@@ -256,10 +261,8 @@ void MeshBody::add_mass(Dofs& mass) const {
 
 double MeshBody::critical_step() const {
   if (is_box()) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 24, 24>> modes(stiffness_,
-                                                                             Eigen::EigenvaluesOnly);
     const double corner_mass = shapes_[0].weights[0] * material_.density;
-    return 2.0 / std::sqrt(modes.eigenvalues().maxCoeff() / corner_mass);
+    return 2.0 / std::sqrt(largest_eigenvalue(stiffness_) / corner_mass);
   }
   return 2.0 / std::sqrt(std::max(largest_eigenvalue(shapes_, material_, element_),
                                   largest_eigenvalue(tetrahedra_, material_, Element::full)));
