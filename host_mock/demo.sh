@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
-# Builds everything in Release, runs the shipped scenes and draws them.
+# Builds the program and the laws in Release, runs the shipped scenes and draws them.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 bash host_mock/setup.sh
 echo "build: build/release"
-cmake --preset release -DILAW_TESTS=OFF >/dev/null
+# Where nothing is built yet, laws for this processor and, slower, for all others; tests/run.sh adds the rest.
+levels=()
+[ -e build/release ] || levels=(-DILAW_LEVELS="$(grep -q ' avx512vl ' /proc/cpuinfo && echo v4 || echo v3)")
+cmake --preset release -DILAW_TESTS=OFF "${levels[@]}" >/dev/null
 quiet=()
 [ -t 1 ] || quiet=(-- --quiet)  # on a terminal ninja shows how far it is
 cmake --build --preset release "${quiet[@]}"

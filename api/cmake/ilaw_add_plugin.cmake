@@ -1,7 +1,9 @@
 # ilaw_add_plugin(name source) makes the law library <name>.so, as portable as a library can be: nothing exported
 # but the entry, nothing needed but libc and libm, the same bits on every processor. On x86-64 a source in C++ is
-# compiled once per instruction-set level; the library takes the best one that it finds when an instance is created.
+# compiled once per instruction-set level: the compiler's own, the baseline, and those of ILAW_LEVELS; the library takes
+# the best one that the processor has when an instance is created.
 # A source in C (ilaw/plain_c.h) is compiled once. DEVICE: with kernels for GPUs, where they can be made.
+set(ILAW_LEVELS "v3;v4" CACHE STRING "Levels of x86-64 that laws are compiled for beside the baseline: v3, v4 or both")
 function(ilaw_add_plugin name source)
   cmake_parse_arguments(PARSE_ARGV 2 arg "DEVICE" "" "")
   get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
@@ -25,10 +27,9 @@ function(ilaw_add_plugin name source)
   if(NOT source MATCHES "[.]c$" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT ILAW_SANITIZE AND
      NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
     target_compile_definitions(${name} PRIVATE ILAW_KIT_OTHER_LEVELS)
-    foreach(level v3 v4)
+    foreach(level IN LISTS ILAW_LEVELS)
       ilaw_add_level(${name} ${source} ${level})
     endforeach()
-    target_compile_options(${name}_v4 PRIVATE $<$<CXX_COMPILER_ID:GNU>:-mprefer-vector-width=512>)
   endif()
   if(arg_DEVICE AND NOT source MATCHES "[.]c$")
     ilaw_add_kernels(${name} ${source})
@@ -56,6 +57,9 @@ function(ilaw_add_level name source level)
   target_compile_definitions(${name}_${level} PRIVATE ILAW_KIT_LEVEL=${level}
                                                       ILAW_KIT_WALKS=ilaw_kit_walks_${level})
   target_compile_options(${name}_${level} PRIVATE -march=x86-64-${level})
+  if(level STREQUAL "v4")
+    target_compile_options(${name}_${level} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-mprefer-vector-width=512>)
+  endif()
   set_target_properties(${name}_${level} PROPERTIES POSITION_INDEPENDENT_CODE ON INTERPROCEDURAL_OPTIMIZATION OFF)
   set(object ${CMAKE_CURRENT_BINARY_DIR}/${name}_${level}.o)
   add_custom_command(OUTPUT ${object}

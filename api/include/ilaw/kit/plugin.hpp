@@ -37,8 +37,8 @@ struct functions {
   static const char* ILAW_CALL instruction_set(const ilaw_instance* opaque) {
     [[maybe_unused]] const ilaw_kit_walk walk = of<Law>(opaque).walk;
 #if defined(ILAW_KIT_OTHER_LEVELS)
-    if (walk && walk == ilaw_kit_walks_v4()[Place]) return "v4";
-    if (walk && walk == ilaw_kit_walks_v3()[Place]) return "v3";
+    for (const other_level& level : other_levels)
+      if (walk && level.walks && walk == level.walks()[Place]) return level.name;
 #endif
     return "baseline";
   }

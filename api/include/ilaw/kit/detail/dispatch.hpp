@@ -20,8 +20,9 @@
 using ilaw_kit_walk = void (*)(const void* instance, const ilaw_batch& batch, void* found);
 
 #if defined(ILAW_KIT_OTHER_LEVELS)
-extern "C" const ilaw_kit_walk* ilaw_kit_walks_v3();
-extern "C" const ilaw_kit_walk* ilaw_kit_walks_v4();
+// Null where the library was built without that level.
+extern "C" [[gnu::weak, gnu::visibility("hidden")]] const ilaw_kit_walk* ilaw_kit_walks_v3();
+extern "C" [[gnu::weak, gnu::visibility("hidden")]] const ilaw_kit_walk* ilaw_kit_walks_v4();
 #endif
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
@@ -67,6 +68,16 @@ inline processor this_processor() {
   return p;
 }
 
+#if defined(ILAW_KIT_OTHER_LEVELS)
+struct other_level {
+  const char* name;
+  const processor& needs;
+  const ilaw_kit_walk* (*walks)();
+};
+inline constexpr other_level other_levels[] = {{"v4", level_v4, ilaw_kit_walks_v4},
+                                               {"v3", level_v3, ilaw_kit_walks_v3}};
+#endif
+
 // The walks of the best level that was compiled, that the processor has and the environment allows; null: the
 // baseline's own.
 inline const ilaw_kit_walk* best_walks() {
@@ -76,8 +87,8 @@ inline const ilaw_kit_walk* best_walks() {
     return !cap || (std::strcmp(cap, "baseline") != 0 && std::strcmp(cap, level) >= 0);
   };
   const processor here = this_processor();
-  if (allowed("v4") && serves(here, level_v4)) return ilaw_kit_walks_v4();
-  if (allowed("v3") && serves(here, level_v3)) return ilaw_kit_walks_v3();
+  for (const other_level& level : other_levels)
+    if (level.walks && allowed(level.name) && serves(here, level.needs)) return level.walks();
 #endif
   return nullptr;
 }
