@@ -29,6 +29,7 @@ void Blocks::allocate() {
     integers += block.stride * static_cast<std::size_t>(layout.ends + 1);
     bytes += block.stride;
   }
+  size_ = values;
   if (values_.size() < values) values_.resize(values + values / 4);
   if (integers_.size() < integers) integers_.resize(integers + integers / 4);
   if (bytes_.size() < bytes) bytes_.resize(bytes + bytes / 4);

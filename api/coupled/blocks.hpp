@@ -130,12 +130,15 @@ class Blocks {
   // Copies impulses, states and status back to the lanes they were selected from.
   void give_back(Blocks& to) const;
 
+  // Of all columns.
+  std::size_t bytes() const { return sizeof(double) * size_; }
   std::vector<Block>& list() { return blocks_; }
   const std::vector<Block>& list() const { return blocks_; }
 
  private:
   std::vector<Block> blocks_;
-  std::vector<double> values_;
+  std::vector<double> values_;  // room for more
+  std::size_t size_ = 0;        // of all columns
   std::vector<std::int32_t> integers_;
   std::vector<std::uint8_t> bytes_;
   std::span<const Lane> origins_;

@@ -63,6 +63,13 @@ void Bodies::read(const ilaw_bodies& given) {
   if (!inertia_.empty()) inertia_[count] = {};
   movable_[count] = 0;
   now_ = free_;
+  previous_.resize(count + 1);
+  for (std::size_t b = 0; b < count; ++b) {
+    const auto i = static_cast<std::int64_t>(b);
+    previous_[b].velocity = vector(given.v_previous, i, given.dimension);
+    previous_[b].spin = rotate() ? vector(given.spin_previous, i, 3) : Vector{};
+  }
+  previous_[count] = {};
   rank_by_id();
 }
 
@@ -93,12 +100,6 @@ void Bodies::split(const std::vector<double>& copies) {
     inertia_[b].inverse_inertia = share * inertia_[b].inverse_inertia;
   }
   now_ = free_;
-}
-
-Motion Bodies::previous(std::int32_t body) const {
-  if (body == wall()) return {};
-  return {vector(given_.v_previous, body, given_.dimension),
-          rotate() ? vector(given_.spin_previous, body, 3) : Vector{}};
 }
 
 Inertia Bodies::inertia_of(std::int32_t body) const {
@@ -161,7 +162,7 @@ double Bodies::work(const std::vector<Motion>& impulses) const {
   for (std::size_t b = 0; b < static_cast<std::size_t>(given_.count); ++b) {
     const auto& [impulse, moment] = impulses[b];
     if (is_zero(impulse) && is_zero(moment)) continue;
-    const Motion before = previous(static_cast<std::int32_t>(b));
+    const Body& before = previous_[b];
     twice += dot(impulse, before.velocity + now_[b].velocity) + dot(moment, before.spin + now_[b].spin);
   }
   return 0.5 * twice;

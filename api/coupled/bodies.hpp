@@ -61,7 +61,8 @@ class Bodies {
   Body* now() { return now_.data(); }
   const Body* now() const { return now_.data(); }
   const Inertia* inertia() const { return inertia_.data(); }
-  Motion previous(std::int32_t body) const;
+  // Velocities before the step, without masses.
+  const Body* previous() const { return previous_.data(); }
   Inertia inertia_of(std::int32_t body) const;
 
   // Velocities without contacts plus the changes by impulses and their moments, one Motion per body. Returns
@@ -78,7 +79,7 @@ class Bodies {
   void rank_by_id();
 
   ilaw_bodies given_{};
-  std::vector<Body> free_, now_;
+  std::vector<Body> free_, now_, previous_;
   std::vector<Inertia> inertia_;
   std::vector<std::uint8_t> movable_;
   std::vector<std::int32_t> ranks_, order_;

@@ -269,9 +269,15 @@ bool Contacts::fill(Block& block, std::size_t lane, std::int64_t k, const Bodies
   if (layout_.gap_offset >= 0) block.column(layout_.gap_offset)[lane] = value(theirs_.gap_offset, k);
   if (layout_.area >= 0) block.column(layout_.area)[lane] = value(theirs_.area, k);
   if (layout_.tangent >= 0) block.put(layout_.tangent, lane, vector(theirs_.tangent, k, dimension_));
-  if (layout_.v_previous >= 0) block.put(layout_.v_previous, lane, previous(block, lane, k, bodies));
-  if (layout_.v_previous >= 0 && has_spins())
-    block.put(layout_.v_previous + 3, lane, previous_spin(block, lane, k, bodies));
+  if (layout_.v_previous >= 0) {  // to which those of the bodies are added
+    const auto or_else = [](const ilaw_input& before, const ilaw_input& now) -> const ilaw_input& {
+      return before.values ? before : now;
+    };
+    const ilaw_input& velocity = or_else(given_.wall_previous, given_.wall_velocity);
+    block.put(layout_.v_previous, lane, -1.0 * vector(velocity, k, dimension_));
+    const ilaw_input& spin = or_else(given_.wall_spin_previous, given_.wall_spin);
+    if (has_spins()) block.put(layout_.v_previous + 3, lane, -1.0 * vector(spin, k, 3));
+  }
   for (std::uint32_t p = 0; layout_.parameters >= 0 && p < info_.per_node_parameter_count; ++p)
     block.column(layout_.parameters + static_cast<int>(p))[lane] = value(theirs_.per_node_parameters[p], k);
   for (int c = 0; c < layout_.state_size; ++c)
@@ -379,39 +385,6 @@ Symmetric Contacts::coupled_delassus(const Block& block, std::size_t lane, const
     }
   });
   return {rows[0][0], rows[1][1], rows[2][2], rows[1][0], rows[2][0], rows[2][1]};
-}
-
-Vector Contacts::previous(const Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const {
-  const ilaw_input& wall = given_.wall_previous.values ? given_.wall_previous : given_.wall_velocity;
-  Vector velocity = -1.0 * vector(wall, k, dimension_);
-  const auto add = [&](std::int32_t body, const Vector& arm, double sign) {
-    if (body == bodies.wall()) return;
-    const Motion motion = bodies.previous(body);
-    velocity = velocity + sign * (motion.velocity + cross(motion.spin, arm));
-  };
-  if (kind_ != Kind::weighted) {
-    add(block.end(0, lane), bodies.rotate() ? vector(given_.arm, k, 3) : Vector{}, 1.0);
-    add(block.end(1, lane), bodies.rotate() ? vector(given_.counterpart_arm, k, 3) : Vector{}, -1.0);
-    return velocity;
-  }
-  const WeightedKernel kernel(block, body_count_);
-  for (std::size_t c = 0; c < 3; ++c) {
-    Vector axis{};
-    axis[c] = 1.0;
-    kernel.apply(lane, axis, [&](std::int32_t body, const Vector& impulse, const Vector& moment) {
-      if (body == bodies.wall()) return;
-      const Motion motion = bodies.previous(body);
-      velocity[c] += dot(impulse, motion.velocity) + dot(moment, motion.spin);
-    });
-  }
-  return velocity;
-}
-
-Vector Contacts::previous_spin(const Block& block, std::size_t lane, std::int64_t k,
-                               const Bodies& bodies) const {
-  const ilaw_input& wall = given_.wall_spin_previous.values ? given_.wall_spin_previous : given_.wall_spin;
-  return bodies.previous(block.end(0, lane)).spin - bodies.previous(block.end(1, lane)).spin -
-         vector(wall, k, 3);
 }
 
 std::int32_t Contacts::evaluate(const Block& block, const Call& call, ilaw_report& report) const {

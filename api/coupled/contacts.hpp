@@ -74,8 +74,6 @@ class Contacts {
   bool has_spins() const { return given_.delassus_form == ILAW_DELASSUS_TRANSVERSE_SPIN; }
   bool is_transverse() const { return has_spins() || given_.delassus_form == ILAW_DELASSUS_TRANSVERSE; }
   bool is_weighted() const;
-  Vector previous(const Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const;
-  Vector previous_spin(const Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const;
   Vector relative(std::int64_t k, const Bodies& bodies) const;
   Vector start(const ilaw_output& values, std::int64_t k) const;
 

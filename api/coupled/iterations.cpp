@@ -100,14 +100,15 @@ bool Iterations::conjugate(Blocks& blocks, std::uint32_t most) {
       if (k % wake_interval == 0) sweep_.wake(blocks);
     } else {
       direction_.assign(static_cast<std::size_t>(problem_.bodies.count()), {});
+      keep_start();
     }
-    keep_start();
     const bool done = iterate(blocks, step);
     if (done && !ranks_.any_rank(sweep_.wake(blocks))) return true;
   }
   return false;
 }
 
+// And starts from there.
 void Iterations::extrapolate_bodies(double beta) {
   Body* now = problem_.bodies.now();
   for (std::size_t b = 0; b < direction_.size(); ++b) {
@@ -116,6 +117,7 @@ void Iterations::extrapolate_bodies(double beta) {
     now[b].velocity = now[b].velocity + beta * direction.velocity;
     now[b].spin = now[b].spin + beta * direction.spin;
     direction = {beta * direction.velocity + v, beta * direction.spin + w};
+    start_[b] = {now[b].velocity, now[b].spin};
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "blocks.hpp"
 #include "bodies.hpp"
+#include "lanes.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -25,8 +26,15 @@ inline Vector velocity_at(const Body& body, const Vector& arm) {
   return body.velocity + cross(body.spin, arm);
 }
 
+// A body's velocity and inverse mass, its spin and inverse moment of inertia.
+inline Lanes& velocity_row(Body& body) { return lanes(body.velocity.data()); }
+inline Lanes& spin_row(Body& body) { return lanes(body.spin.data()); }
+inline const Lanes& velocity_row(const Body& body) { return lanes(body.velocity.data()); }
+inline const Lanes& spin_row(const Body& body) { return lanes(body.spin.data()); }
+
 // Each kernel has relative(bodies, lane), and apply(lane, r, add), which calls add(body, impulse, moment),
-// both with `width` components.
+// both with `width` components. Those of bodies with one mass and one moment of inertia have the same for
+// four lanes from `lane` on, with the same bits.
 class PointKernel {
  public:
   static constexpr std::size_t width = 3;
@@ -38,6 +46,21 @@ class PointKernel {
   void apply(std::size_t q, const Vector& r, Add&& add) const {
     add(body_[q], r, Vector{});
     add(other_[q], -1.0 * r, Vector{});
+  }
+  LanesVector relative_of_four(const Body* bodies, std::size_t q) const {
+    Lanes row[4];
+    for (std::size_t k = 0; k < 4; ++k)
+      row[k] = velocity_row(bodies[body_[q + k]]) - velocity_row(bodies[other_[q + k]]);
+    return columns_of(row);
+  }
+  void apply_four(std::size_t q, const LanesVector& r, Body* bodies) const {
+    Lanes row[4];
+    to_rows(r, row);
+    for (std::size_t k = 0; k < 4; ++k) {
+      Body &x = bodies[body_[q + k]], &y = bodies[other_[q + k]];
+      velocity_row(x) += x.inverse_mass * row[k];
+      velocity_row(y) += y.inverse_mass * -row[k];
+    }
   }
 
  private:
@@ -64,6 +87,27 @@ class SphereKernel {
     add(body_[q], r, arm_[q] * moment);
     add(other_[q], -1.0 * r, -other_arm_[q] * moment);
   }
+  LanesVector relative_of_four(const Body* bodies, std::size_t q) const {
+    Lanes velocity[4], turning[4];
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Body &x = bodies[body_[q + k]], &y = bodies[other_[q + k]];
+      velocity[k] = velocity_row(x) - velocity_row(y);
+      turning[k] = arm_[q + k] * spin_row(x) - other_arm_[q + k] * spin_row(y);
+    }
+    return columns_of(velocity) + cross(columns_of(turning), lanes(normal_ + q, stride_));
+  }
+  void apply_four(std::size_t q, const LanesVector& r, Body* bodies) const {
+    Lanes impulse[4], moment[4];
+    to_rows(r, impulse);
+    to_rows(cross(lanes(normal_ + q, stride_), r), moment);
+    for (std::size_t k = 0; k < 4; ++k) {
+      Body &x = bodies[body_[q + k]], &y = bodies[other_[q + k]];
+      velocity_row(x) += x.inverse_mass * impulse[k];
+      spin_row(x) += x.inverse_inertia * (arm_[q + k] * moment[k]);
+      velocity_row(y) += y.inverse_mass * -impulse[k];
+      spin_row(y) += y.inverse_inertia * (-other_arm_[q + k] * moment[k]);
+    }
+  }
 
  protected:
   Vector normal(std::size_t q) const { return {normal_[q], normal_[stride_ + q], normal_[2 * stride_ + q]}; }
@@ -77,6 +121,25 @@ class SpinKernel : public SphereKernel {
  public:
   static constexpr std::size_t width = 6;
   explicit SpinKernel(const Block& block) : SphereKernel(block) {}
+  LanesWrench relative_of_four(const Body* bodies, std::size_t q) const {
+    Lanes spin[4];
+    for (std::size_t k = 0; k < 4; ++k)
+      spin[k] = spin_row(bodies[body_[q + k]]) - spin_row(bodies[other_[q + k]]);
+    return {SphereKernel::relative_of_four(bodies, q), columns_of(spin)};
+  }
+  void apply_four(std::size_t q, const LanesWrench& by, Body* bodies) const {
+    Lanes impulse[4], moment[4], own[4];
+    to_rows(by.linear, impulse);
+    to_rows(cross(lanes(normal_ + q, stride_), by.linear), moment);
+    to_rows(by.angular, own);
+    for (std::size_t k = 0; k < 4; ++k) {
+      Body &x = bodies[body_[q + k]], &y = bodies[other_[q + k]];
+      velocity_row(x) += x.inverse_mass * impulse[k];
+      spin_row(x) += x.inverse_inertia * (arm_[q + k] * moment[k] + own[k]);
+      velocity_row(y) += y.inverse_mass * -impulse[k];
+      spin_row(y) += y.inverse_inertia * (-other_arm_[q + k] * moment[k] - own[k]);
+    }
+  }
   Wrench relative(const Body* bodies, std::size_t q) const {
     const Vector v = SphereKernel::relative(bodies, q);
     const Vector w = bodies[body_[q]].spin - bodies[other_[q]].spin;
@@ -152,6 +215,10 @@ class WeightedKernel {
 
 template <class Kernel>
 inline constexpr std::size_t width_of = std::remove_cvref_t<Kernel>::width;
+template <class Kernel>
+inline constexpr bool takes_four = requires(const Kernel& k, Body* b) {
+  k.relative_of_four(b, 0);
+};
 
 // Calls visit with the kernel of a block.
 template <class Visit>

@@ -25,6 +25,9 @@ inline void put(const LanesVector& v, double* first, std::size_t stride) {
   lanes(first + stride) = v.y;
   lanes(first + 2 * stride) = v.z;
 }
+inline LanesVector operator+(const LanesVector& a, const LanesVector& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
 inline LanesVector operator-(const LanesVector& a, const LanesVector& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
@@ -38,10 +41,33 @@ inline LanesVector added(const LanesVector& a, const Lanes& s, const LanesVector
   return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
 }
 
+// Four rows, of which the first three numbers count, to columns; and back, the fourth being zero.
+inline LanesVector columns_of(const Lanes (&row)[4]) {
+  const Lanes xz01 = __builtin_shufflevector(row[0], row[1], 0, 4, 2, 6),
+              xz23 = __builtin_shufflevector(row[2], row[3], 0, 4, 2, 6),
+              y01 = __builtin_shufflevector(row[0], row[1], 1, 5, 3, 7),
+              y23 = __builtin_shufflevector(row[2], row[3], 1, 5, 3, 7);
+  return {__builtin_shufflevector(xz01, xz23, 0, 1, 4, 5), __builtin_shufflevector(y01, y23, 0, 1, 4, 5),
+          __builtin_shufflevector(xz01, xz23, 2, 3, 6, 7)};
+}
+inline void to_rows(const LanesVector& v, Lanes (&row)[4]) {
+  const Lanes xy02 = __builtin_shufflevector(v.x, v.y, 0, 4, 2, 6),
+              xy13 = __builtin_shufflevector(v.x, v.y, 1, 5, 3, 7),
+              z02 = __builtin_shufflevector(v.z, Lanes{}, 0, 4, 2, 6),
+              z13 = __builtin_shufflevector(v.z, Lanes{}, 1, 5, 3, 7);
+  row[0] = __builtin_shufflevector(xy02, z02, 0, 1, 4, 5);
+  row[1] = __builtin_shufflevector(xy13, z13, 0, 1, 4, 5);
+  row[2] = __builtin_shufflevector(xy02, z02, 2, 3, 6, 7);
+  row[3] = __builtin_shufflevector(xy13, z13, 2, 3, 6, 7);
+}
+
 // Impulse and moment, or velocity and spin.
 struct LanesWrench {
   LanesVector linear, angular;
 };
+inline LanesWrench lanes_of_wrench(const double* first, std::size_t stride) {
+  return {lanes(first, stride), lanes(first + 3 * stride, stride)};
+}
 inline void put(const LanesWrench& v, double* first, std::size_t stride) {
   put(v.linear, first, stride);
   put(v.angular, first + 3 * stride, stride);
@@ -120,7 +146,7 @@ Lanes size(const Form&, std::size_t, const LanesVector& x) {
   return largest(x);
 }
 inline LanesWrench read(const SpinForm&, const double* first, std::size_t stride) {
-  return {lanes(first, stride), lanes(first + 3 * stride, stride)};
+  return lanes_of_wrench(first, stride);
 }
 inline Lanes size(const SpinForm& form, std::size_t q, const LanesWrench& x) {
   return larger(largest(x.linear), lanes(form.length + q) * largest(x.angular));

@@ -103,12 +103,14 @@ const char* Solver::make_blocks(ilaw_coupled_report& report) {
     colours_.assign(problem_.groups[g], static_cast<std::int32_t>(g), problem_.bodies, blocks_, order_);
   blocks_.allocate();
   auto next = order_.begin();
-  for (Block& block : blocks_.list())
+  for (Block& block : blocks_.list()) {
     for (std::size_t lane = 0; lane < block.count; ++lane)
       if (!problem_.group(block).fill(block, lane, *next++, problem_.bodies)) {
         report.bad_group = block.group;
         return "delassus_form is transverse, and an arm is not along the normal";
       }
+    sweep_.add_previous(block);
+  }
   return nullptr;
 }
 

@@ -39,6 +39,15 @@ void with_form(const Block& block, Visit&& visit) {
   }
 }
 
+// Blocks beyond the second cache: columns of the next one, which follow those of this one, are asked for along
+// with the work on this one, a part with every four lanes. Processors see too many columns to do so.
+constexpr std::size_t cached_bytes = std::size_t{1} << 20;
+void ask_ahead(const Block& block, std::size_t lane) {
+  const auto columns = static_cast<std::size_t>(block.layout->columns);
+  const double* next = block.values + (block.stride + lane) * columns;
+  for (std::size_t k = 0; k < 4 * columns; k += 8) __builtin_prefetch(next + k, 0, 2);
+}
+
 // Whether the last evaluation of a contact left no trace.
 bool has_not_acted(const Block& block, std::size_t lane) {
   const Layout& layout = *block.layout;
@@ -64,28 +73,47 @@ void Sweep::respond(const Block& block, const double* x, std::size_t xs, double*
 }
 
 void Sweep::gather(const Block& block, double* velocity) const {
-  const Contacts& group = problem_.group(block);
   const Layout& layout = *block.layout;
-  const Body* bodies = problem_.bodies.now();
-  const std::size_t n = padded(block.count);
+  gather(block, problem_.bodies.now(), velocity);
+  if (layout.wall < 0) return;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(layout.width); ++c) {
+    const double* wall = block.column(layout.wall + static_cast<int>(c));
+    for (std::size_t q = 0; q < padded(block.count); ++q) velocity[c * max_stride + q] -= wall[q];
+  }
+}
+
+void Sweep::add_previous(Block& block) const {
+  const Layout& layout = *block.layout;
+  if (layout.v_previous < 0) return;
+  Columns velocity;
+  gather(block, problem_.bodies.previous(), velocity.data());
+  for (std::size_t c = 0; c < static_cast<std::size_t>(layout.width); ++c)
+    for (std::size_t q = 0; q < block.count; ++q)
+      block.column(layout.v_previous + static_cast<int>(c))[q] += velocity[c * max_stride + q];
+}
+
+void Sweep::gather(const Block& block, const Body* bodies, double* velocity) const {
+  const Contacts& group = problem_.group(block);
   with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
-    for (std::size_t q = 0; q < block.count; ++q) {
+    std::size_t q = 0;
+    if constexpr (takes_four<decltype(kernel)>) {
+      for (; q + 4 <= block.count; q += 4) {
+        if (asks_ahead_) ask_ahead(block, q);
+        put(kernel.relative_of_four(bodies, q), velocity + q, max_stride);
+      }
+    }
+    for (; q < block.count; ++q) {
       const auto u = kernel.relative(bodies, q);
       for (std::size_t c = 0; c < u.size(); ++c) velocity[c * max_stride + q] = u[c];
     }
   });
-  const auto width = static_cast<std::size_t>(layout.width);
-  for (std::size_t c = 0; c < width; ++c)
-    for (std::size_t q = block.count; q < n; ++q) velocity[c * max_stride + q] = 0.0;
-  if (layout.wall < 0) return;
-  for (std::size_t c = 0; c < width; ++c) {
-    const double* wall = block.column(layout.wall + static_cast<int>(c));
-    for (std::size_t q = 0; q < n; ++q) velocity[c * max_stride + q] -= wall[q];
-  }
+  for (std::size_t c = 0; c < static_cast<std::size_t>(block.layout->width); ++c)
+    for (std::size_t q = block.count; q < padded(block.count); ++q) velocity[c * max_stride + q] = 0.0;
 }
 
 Change Sweep::run(Blocks& blocks, const Conjugate& conjugate) {
   Change change;
+  asks_ahead_ = blocks.bytes() > cached_bytes;
   for (Block& block : blocks.list()) {
     if (block.asleep) continue;
     if (conjugate.active) extrapolate(block, conjugate.beta);
@@ -179,8 +207,17 @@ ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Change& change) {
   change.square += sum(square);
   const Contacts& group = problem_.group(block);
   with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
+    std::size_t q = 0;
+    if constexpr (takes_four<decltype(kernel)>) {
+      for (; q + 4 <= block.count; q += 4) {
+        if constexpr (width_of<decltype(kernel)> == 3)
+          kernel.apply_four(q, lanes(dr + q, s), problem_.bodies.now());
+        else
+          kernel.apply_four(q, lanes_of_wrench(dr + q, s), problem_.bodies.now());
+      }
+    }
     with_velocities(problem_.bodies, group.kind(), [&](const auto& add) {
-      for (std::size_t q = 0; q < block.count; ++q)
+      for (; q < block.count; ++q)
         kernel.apply(q, columns_at<width_of<decltype(kernel)>>(dr + q, s), add);
     });
   });

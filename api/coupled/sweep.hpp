@@ -50,6 +50,8 @@ class Sweep {
   bool wake(Blocks& blocks);
   // Velocity of each lane, and spin where it has a moment, into columns at distances of max_stride.
   void gather(const Block& block, double* velocity) const;
+  // Adds the velocities of its bodies before the step to v_previous, where the law reads it.
+  void add_previous(Block& block) const;
   // H of the law times columns x, into y: columns at distances of max_stride.
   void respond(const Block& block, const double* x, std::size_t x_stride, double* y) const;
   // Adds impulses of all contacts and their moments to the sums per body.
@@ -63,6 +65,7 @@ class Sweep {
   void reset();
 
  private:
+  void gather(const Block& block, const Body* bodies, double* velocity) const;
   void extrapolate(Block& block, double beta) const;
   double prepare(Block& block);
   bool evaluate(Block& block, Change& change);
@@ -73,6 +76,7 @@ class Sweep {
   ilaw_report report_{};
   Problem& problem_;
   double stable_step_ = 0.0;
+  bool asks_ahead_ = false;
   std::int32_t failed_group_ = -1;
 };
 
