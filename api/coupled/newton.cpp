@@ -63,8 +63,9 @@ bool Newton::linearize(const Blocks& blocks, const Problem& problem, const Sweep
 
 namespace {
 
-template <int width>
-using Square = Eigen::Matrix<double, width, width>;
+// Of up to six rows and columns.
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
 
 }  // namespace
 
@@ -79,36 +80,37 @@ struct Newton::Contact {
   std::array<double, 6> right{};
 
   // scales: of impulse and moment. Tangents with moments are made free of units by them.
-  template <int w>
   void factorize(const double* tangent, const double* difference, const double* scales) {
     constexpr double noise = 1e-7;  // of differences, relative to the tangent of a rigid contact
-    Square<w> t = Eigen::Map<const Square<w>>(tangent);
-    Eigen::Matrix<double, w, 1> scale = Eigen::Matrix<double, w, 1>::Ones();
-    if constexpr (w == 6) {
+    using Square = Eigen::Map<Matrix>;
+    Matrix t = Eigen::Map<const Matrix>(tangent, width, width);
+    Column scale = Column::Ones(width);
+    if (width == 6) {
       scale << scales[0], scales[0], scales[0], scales[1], scales[1], scales[1];
       t = scale.asDiagonal() * t * scale.asDiagonal();
     }
-    const double delassus = w == 6 ? 1.0 : scales[0] * scales[0];
-    const Eigen::ColPivHouseholderQR<Square<w>> qr(t);
-    const Square<w> r = qr.matrixQR().template triangularView<Eigen::Upper>();
-    while (rank < w && std::fabs(r(rank, rank)) * delassus > noise) ++rank;
-    Square<w> of_p = qr.householderQ(), of_q = (r * qr.colsPermutation().transpose()).transpose();
-    if constexpr (w == 6) {
+    const double delassus = width == 6 ? 1.0 : scales[0] * scales[0];
+    const Eigen::ColPivHouseholderQR<Matrix> qr(t);
+    const Matrix r = qr.matrixQR().triangularView<Eigen::Upper>();
+    while (rank < width && std::fabs(r(rank, rank)) * delassus > noise) ++rank;
+    Matrix of_p = qr.householderQ(), of_q = (r * qr.colsPermutation().transpose()).transpose();
+    if (width == 6) {
       of_p = scale.cwiseInverse().asDiagonal() * of_p;
       of_q = scale.cwiseInverse().asDiagonal() * of_q;
     }
-    const Square<w> of_h = Eigen::Map<const Square<w>>(h.data()), own = of_q.transpose() * of_h * of_p;
-    const Eigen::Map<const Eigen::Matrix<double, w, 1>> by(difference);
-    Eigen::Map<Eigen::Matrix<double, w, 1>>(right.data()) = -(of_q.transpose() * (of_h * by));
-    Eigen::Map<Square<w>>(p.data()) = of_p;
-    Eigen::Map<Square<w>>(q.data()) = of_q;
-    Eigen::Map<Square<w>>(h.data()) = own;  // q' H p takes its place
+    Square of_h(h.data(), width, width);
+    const Matrix h_q = of_h.lazyProduct(of_q);  // H is symmetric
+    Eigen::Map<Column>(right.data(), width) =
+        -h_q.transpose().lazyProduct(Eigen::Map<const Column>(difference, width));
+    of_h = h_q.transpose().lazyProduct(of_p);  // q' H p takes its place
+    Square(p.data(), width, width) = of_p;
+    Square(q.data(), width, width) = of_q;
   }
-  template <int w>
   void add_solution(const Eigen::VectorXd& solution, double* changes) const {
-    const Square<w> of_p = Eigen::Map<const Square<w>>(p.data());
-    Eigen::Map<Eigen::Matrix<double, w, 1>>(changes + row) +=
-        of_p.leftCols(rank) * solution.segment(first, rank);
+    for (Eigen::Index c = 0; c < rank; ++c)
+      for (int k = 0; k < width; ++k)
+        changes[row + static_cast<std::size_t>(k)] +=
+            p[static_cast<std::size_t>(c * width + k)] * solution[first + c];
   }
 };
 
@@ -157,10 +159,7 @@ void Newton::factorize() {
   for (std::size_t k = 0; k < system_->contacts.size(); ++k) {
     Contact& contact = system_->contacts[k];
     const double *difference = &difference_[contact.row], *scales = &equations_.scales()[contact.row / 3];
-    if (contact.width == 3)
-      contact.factorize<3>(tangent, difference, scales);
-    else
-      contact.factorize<6>(tangent, difference, scales);
+    contact.factorize(tangent, difference, scales);
     contact.first = first;
     first += contact.rank;
     tangent += contact.width * contact.width;
@@ -222,11 +221,7 @@ bool Newton::step(const Blocks& blocks, const Problem& problem, const Sweep& swe
   if (factor.info() != Eigen::Success) return false;
   const Eigen::VectorXd solution = factor.solve(right);
   if (!solution.allFinite()) return false;
-  for (const Contact& contact : contacts)
-    if (contact.width == 3)
-      contact.add_solution<3>(solution, changes.data());
-    else
-      contact.add_solution<6>(solution, changes.data());
+  for (const Contact& contact : contacts) contact.add_solution(solution, changes.data());
   return true;
 }
 
