@@ -1,9 +1,10 @@
+set(ILAW_LEVELS "v3;v4" CACHE STRING "Levels of x86-64 that laws are compiled for beside the baseline: v3, v4 or both")
+
 # ilaw_add_plugin(name source) makes the law library <name>.so, as portable as a library can be: nothing exported
 # but the entry, nothing needed but libc and libm, the same bits on every processor. On x86-64 a source in C++ is
 # compiled once per instruction-set level: the compiler's own, the baseline, and those of ILAW_LEVELS; the library takes
 # the best one that the processor has when an instance is created.
 # A source in C (ilaw/plain_c.h) is compiled once. DEVICE: with kernels for GPUs, where they can be made.
-set(ILAW_LEVELS "v3;v4" CACHE STRING "Levels of x86-64 that laws are compiled for beside the baseline: v3, v4 or both")
 function(ilaw_add_plugin name source)
   cmake_parse_arguments(PARSE_ARGV 2 arg "DEVICE" "" "")
   get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
