@@ -39,10 +39,10 @@ void with_form(const Block& block, Visit&& visit) {
   }
 }
 
-// Blocks beyond the second cache: columns of the next one, which follow those of this one, are asked for along
-// with the work on this one, a part with every four lanes. Processors see too many columns to do so.
+// With every four lanes a part of the next block, whose columns follow those of this one, where all blocks
+// exceed the second cache. A block has more columns than the processor follows by itself.
 constexpr std::size_t cached_bytes = std::size_t{1} << 20;
-void ask_ahead(const Block& block, std::size_t lane) {
+void prefetch_next(const Block& block, std::size_t lane) {
   const auto columns = static_cast<std::size_t>(block.layout->columns);
   const double* next = block.values + (block.stride + lane) * columns;
   for (std::size_t k = 0; k < 4 * columns; k += 8) __builtin_prefetch(next + k, 0, 2);
@@ -98,7 +98,7 @@ void Sweep::gather(const Block& block, const Body* bodies, double* velocity) con
     std::size_t q = 0;
     if constexpr (takes_four<decltype(kernel)>) {
       for (; q + 4 <= block.count; q += 4) {
-        if (asks_ahead_) ask_ahead(block, q);
+        if (prefetches_) prefetch_next(block, q);
         put(kernel.relative_of_four(bodies, q), velocity + q, max_stride);
       }
     }
@@ -113,7 +113,7 @@ void Sweep::gather(const Block& block, const Body* bodies, double* velocity) con
 
 Change Sweep::run(Blocks& blocks, const Conjugate& conjugate) {
   Change change;
-  asks_ahead_ = blocks.bytes() > cached_bytes;
+  prefetches_ = blocks.bytes() > cached_bytes;
   for (Block& block : blocks.list()) {
     if (block.asleep) continue;
     if (conjugate.active) extrapolate(block, conjugate.beta);
@@ -217,8 +217,7 @@ ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Change& change) {
       }
     }
     with_velocities(problem_.bodies, group.kind(), [&](const auto& add) {
-      for (; q < block.count; ++q)
-        kernel.apply(q, columns_at<width_of<decltype(kernel)>>(dr + q, s), add);
+      for (; q < block.count; ++q) kernel.apply(q, columns_at<width_of<decltype(kernel)>>(dr + q, s), add);
     });
   });
 }

@@ -76,7 +76,7 @@ class Sweep {
   ilaw_report report_{};
   Problem& problem_;
   double stable_step_ = 0.0;
-  bool asks_ahead_ = false;
+  bool prefetches_ = false;
   std::int32_t failed_group_ = -1;
 };
 
