@@ -36,6 +36,7 @@ inline fs::path fresh_folder() {
   static Folders folders;
   const std::string name = "ilaw_test_" + std::to_string(getpid()) + "_" + std::to_string(folders.size());
   folders.push_back(fs::temp_directory_path() / name);
+  fs::remove_all(folders.back());  // of a process with this number that was killed
   fs::create_directories(folders.back());
   return folders.back();
 }
