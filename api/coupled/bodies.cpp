@@ -33,6 +33,7 @@ void Bodies::read(const ilaw_bodies& given) {
   const auto count = static_cast<std::size_t>(given.count);
   const bool mass_per_axis = given.inverse_mass.component_stride != 0 && given.dimension > 1;
   free_.resize(count + 1);
+  previous_.resize(count + 1);
   movable_.resize(count + 1);
   inertia_.resize(mass_per_axis || (rotate() && !are_spheres()) ? count + 1 : 0);
   for (std::size_t b = 0; b < count; ++b) {
@@ -47,6 +48,8 @@ void Bodies::read(const ilaw_bodies& given) {
       body.spin = {};
       body.inverse_inertia = 0.0;
     }
+    previous_[b].velocity = vector(given.v_previous, i, given.dimension);
+    previous_[b].spin = rotate() ? vector(given.spin_previous, i, 3) : Vector{};
     movable_[b] = body.inverse_mass != 0.0 || body.inverse_inertia != 0.0;
     if (inertia_.empty()) continue;
     Inertia& inertia = inertia_[b];
@@ -59,17 +62,10 @@ void Bodies::read(const ilaw_bodies& given) {
     movable_[b] = std::any_of(inertia.inverse_mass.begin(), inertia.inverse_mass.end(), is_nonzero) ||
                   std::any_of(inertia.inverse_inertia.begin(), inertia.inverse_inertia.end(), is_nonzero);
   }
-  free_[count] = {};
+  free_[count] = previous_[count] = {};
   if (!inertia_.empty()) inertia_[count] = {};
   movable_[count] = 0;
   now_ = free_;
-  previous_.resize(count + 1);
-  for (std::size_t b = 0; b < count; ++b) {
-    const auto i = static_cast<std::int64_t>(b);
-    previous_[b].velocity = vector(given.v_previous, i, given.dimension);
-    previous_[b].spin = rotate() ? vector(given.spin_previous, i, 3) : Vector{};
-  }
-  previous_[count] = {};
   rank_by_id();
 }
 

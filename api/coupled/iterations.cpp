@@ -108,7 +108,6 @@ bool Iterations::conjugate(Blocks& blocks, std::uint32_t most) {
   return false;
 }
 
-// And starts from there.
 void Iterations::extrapolate_bodies(double beta) {
   Body* now = problem_.bodies.now();
   for (std::size_t b = 0; b < direction_.size(); ++b) {

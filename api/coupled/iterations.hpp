@@ -68,6 +68,7 @@ class Iterations {
   void exchange_velocities();
   void keep_start();
   bool conjugate(Blocks& blocks, std::uint32_t most);
+  // The next iteration starts from the velocities that this makes.
   void extrapolate_bodies(double beta);
   bool anderson(Blocks& blocks, std::uint32_t most);
   bool take_turns(Blocks& blocks);

@@ -102,14 +102,16 @@ class SphereKernel {
     to_rows(cross(lanes(normal_ + q, stride_), r), moment);
     for (std::size_t k = 0; k < 4; ++k) {
       Body &x = bodies[body_[q + k]], &y = bodies[other_[q + k]];
-      velocity_row(x) += x.inverse_mass * impulse[k];
-      spin_row(x) += x.inverse_inertia * (arm_[q + k] * moment[k]);
-      velocity_row(y) += y.inverse_mass * -impulse[k];
-      spin_row(y) += y.inverse_inertia * (-other_arm_[q + k] * moment[k]);
+      add_rows(x, impulse[k], arm_[q + k] * moment[k]);
+      add_rows(y, -impulse[k], -other_arm_[q + k] * moment[k]);
     }
   }
 
  protected:
+  static void add_rows(Body& body, const Lanes& impulse, const Lanes& moment) {
+    velocity_row(body) += body.inverse_mass * impulse;
+    spin_row(body) += body.inverse_inertia * moment;
+  }
   Vector normal(std::size_t q) const { return {normal_[q], normal_[stride_ + q], normal_[2 * stride_ + q]}; }
   const std::int32_t *body_, *other_;
   const double *normal_, *arm_, *other_arm_;
@@ -134,10 +136,8 @@ class SpinKernel : public SphereKernel {
     to_rows(by.angular, own);
     for (std::size_t k = 0; k < 4; ++k) {
       Body &x = bodies[body_[q + k]], &y = bodies[other_[q + k]];
-      velocity_row(x) += x.inverse_mass * impulse[k];
-      spin_row(x) += x.inverse_inertia * (arm_[q + k] * moment[k] + own[k]);
-      velocity_row(y) += y.inverse_mass * -impulse[k];
-      spin_row(y) += y.inverse_inertia * (-other_arm_[q + k] * moment[k] - own[k]);
+      add_rows(x, impulse[k], arm_[q + k] * moment[k] + own[k]);
+      add_rows(y, -impulse[k], -other_arm_[q + k] * moment[k] - own[k]);
     }
   }
   Wrench relative(const Body* bodies, std::size_t q) const {

@@ -65,8 +65,13 @@ inline void to_rows(const LanesVector& v, Lanes (&row)[4]) {
 struct LanesWrench {
   LanesVector linear, angular;
 };
-inline LanesWrench lanes_of_wrench(const double* first, std::size_t stride) {
-  return {lanes(first, stride), lanes(first + 3 * stride, stride)};
+// Columns of `width` components: a vector, or a wrench.
+template <std::size_t width>
+auto lanes_at(const double* first, std::size_t stride) {
+  if constexpr (width == 3)
+    return lanes(first, stride);
+  else
+    return LanesWrench{lanes(first, stride), lanes(first + 3 * stride, stride)};
 }
 inline void put(const LanesWrench& v, double* first, std::size_t stride) {
   put(v.linear, first, stride);
@@ -146,7 +151,7 @@ Lanes size(const Form&, std::size_t, const LanesVector& x) {
   return largest(x);
 }
 inline LanesWrench read(const SpinForm&, const double* first, std::size_t stride) {
-  return lanes_of_wrench(first, stride);
+  return lanes_at<6>(first, stride);
 }
 inline Lanes size(const SpinForm& form, std::size_t q, const LanesWrench& x) {
   return larger(largest(x.linear), lanes(form.length + q) * largest(x.angular));

@@ -208,14 +208,9 @@ ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Change& change) {
   const Contacts& group = problem_.group(block);
   with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
     std::size_t q = 0;
-    if constexpr (takes_four<decltype(kernel)>) {
-      for (; q + 4 <= block.count; q += 4) {
-        if constexpr (width_of<decltype(kernel)> == 3)
-          kernel.apply_four(q, lanes(dr + q, s), problem_.bodies.now());
-        else
-          kernel.apply_four(q, lanes_of_wrench(dr + q, s), problem_.bodies.now());
-      }
-    }
+    if constexpr (takes_four<decltype(kernel)>)
+      for (; q + 4 <= block.count; q += 4)
+        kernel.apply_four(q, lanes_at<width_of<decltype(kernel)>>(dr + q, s), problem_.bodies.now());
     with_velocities(problem_.bodies, group.kind(), [&](const auto& add) {
       for (; q < block.count; ++q) kernel.apply(q, columns_at<width_of<decltype(kernel)>>(dr + q, s), add);
     });
