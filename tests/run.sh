@@ -60,7 +60,7 @@ done
 
 bash host_mock/setup.sh tests $with
 echo "build: build/release"
-cmake --preset release -DILAW_TESTS=ON -DILAW_LAMMPS=$solvers -DILAW_SOLVERS=$solvers \
+cmake --preset release -DILAW_TESTS=ON -DILAW_LEVELS="v3;v4" -DILAW_LAMMPS=$solvers -DILAW_SOLVERS=$solvers \
       -DILAW_WERROR="${ILAW_WERROR:-OFF}" -DILAW_UNITY="${ILAW_UNITY:-ON}" \
       -DILAW_KERNELS="${ILAW_KERNELS:-OFF}" >/dev/null
 targets=()
