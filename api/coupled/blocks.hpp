@@ -47,6 +47,7 @@ struct Block {
   std::int32_t* contact = nullptr;    // index in the host's arrays
   std::uint8_t* status = nullptr;
   bool asleep = false;  // out of reach and without impulse: left out of iterations
+  double square = 0.0;  // of its contacts in the last iteration: dr.H dr
   std::int64_t bad_count = 0;
   std::int64_t first_bad = -1;
   const char* reason = nullptr;

@@ -25,6 +25,8 @@ struct alignas(64) Body {
   double inverse_inertia = 0.0;
 };
 
+inline bool moves(const Body& body) { return body.inverse_mass != 0.0 || body.inverse_inertia != 0.0; }
+
 // The inertia of bodies with a tensor, or with a mass per axis.
 struct Inertia {
   Vector inverse_mass{};

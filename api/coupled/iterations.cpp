@@ -110,14 +110,17 @@ bool Iterations::conjugate(Blocks& blocks, std::uint32_t most) {
 
 void Iterations::extrapolate_bodies(double beta) {
   Body* now = problem_.bodies.now();
-  for (std::size_t b = 0; b < direction_.size(); ++b) {
+  const auto extrapolate = [&](std::size_t b) {
     Motion& direction = direction_[b];
     const Vector v = now[b].velocity - start_[b].velocity, w = now[b].spin - start_[b].spin;
     now[b].velocity = now[b].velocity + beta * direction.velocity;
     now[b].spin = now[b].spin + beta * direction.spin;
     direction = {beta * direction.velocity + v, beta * direction.spin + w};
     start_[b] = {now[b].velocity, now[b].spin};
-  }
+  };
+  sweep_.share(direction_.size(), [&](std::size_t first, std::size_t end) {
+    for (std::size_t b = first; b < end; ++b) extrapolate(b);
+  });
 }
 
 // Part of the corrections, at most 1, after which the first impulse of a contact has vanished. A moment may.

@@ -58,8 +58,8 @@ class PointKernel {
     to_rows(r, row);
     for (std::size_t k = 0; k < 4; ++k) {
       Body &x = bodies[body_[q + k]], &y = bodies[other_[q + k]];
-      velocity_row(x) += x.inverse_mass * row[k];
-      velocity_row(y) += y.inverse_mass * -row[k];
+      if (moves(x)) velocity_row(x) += x.inverse_mass * row[k];
+      if (moves(y)) velocity_row(y) += y.inverse_mass * -row[k];
     }
   }
 
@@ -109,6 +109,7 @@ class SphereKernel {
 
  protected:
   static void add_rows(Body& body, const Lanes& impulse, const Lanes& moment) {
+    if (!moves(body)) return;
     velocity_row(body) += body.inverse_mass * impulse;
     spin_row(body) += body.inverse_inertia * moment;
   }

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::uint32_t default_sweeps = 1000;
 constexpr double default_tolerance = 1e-10;
+constexpr std::uint32_t most_threads = 256;
 // Laws are incompatible where velocities grew by this factor, times the mass ratio of coupled contacts.
 constexpr double runaway_growth = 1e6;
 // The same where the residual is within the tolerance: it is rounding of such impulses.
@@ -25,6 +26,7 @@ std::int32_t Solver::solve(const ilaw_bodies* bodies, const ilaw_contacts* const
                            std::int64_t group_count, const ilaw_coupled_options& options,
                            ilaw_coupled_report& report) {
   ranks_.use(options.exchange);
+  sweep_.use(std::clamp(options.threads, 1U, most_threads));
   report.bad_group = report.bad_contact = report.worst_group = report.worst_contact = -1;
   report.stable_velocity_step = std::numeric_limits<double>::infinity();
   report.reason = open(bodies, groups, group_count, report);

@@ -4,6 +4,7 @@
 #include "lanes.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -59,10 +60,22 @@ bool has_not_acted(const Block& block, std::size_t lane) {
 
 }  // namespace
 
+void Sweep::use(std::size_t threads) {
+  threads_ = threads;
+  seats_.resize(threads);
+  if (team_.size() > threads) team_.resize(threads);
+}
+
 void Sweep::reset() {
   report_ = {};
   failed_group_ = -1;
-  stable_step_ = std::numeric_limits<double>::infinity();
+  for (Seat& seat : seats_) seat.stable_step = std::numeric_limits<double>::infinity();
+}
+
+double Sweep::stable_step() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Seat& seat : seats_) least = std::min(least, seat.stable_step);
+  return least;
 }
 
 void Sweep::respond(const Block& block, const double* x, std::size_t xs, double* y) const {
@@ -111,26 +124,68 @@ void Sweep::gather(const Block& block, const Body* bodies, double* velocity) con
     for (std::size_t q = block.count; q < padded(block.count); ++q) velocity[c * max_stride + q] = 0.0;
 }
 
-Change Sweep::run(Blocks& blocks, const Conjugate& conjugate) {
-  Change change;
+template <class Work>
+Change Sweep::for_blocks(Blocks& blocks, const Work& work) {
+  std::vector<Block>& list = blocks.list();
   prefetches_ = blocks.bytes() > cached_bytes;
-  for (Block& block : blocks.list()) {
-    if (block.asleep) continue;
-    if (conjugate.active) extrapolate(block, conjugate.beta);
-    if (!evaluate(block, change)) return change;
-    scatter(block, change);
+  std::atomic<bool> failed{false};
+  for (Seat& seat : seats_) {
+    seat.change = {};
+    seat.failed = nullptr;
+  }
+  const auto serve = [&](std::size_t first, std::size_t end, Seat& seat) {
+    for (std::size_t i = first; i < end && !failed.load(std::memory_order_relaxed); ++i) {
+      if (work(list[i], seat)) continue;
+      seat.failed = &list[i];
+      failed = true;
+    }
+  };
+  if (threads_ == 1 || !prefetches_) {  // to meet would take longer than a part of the work
+    serve(0, list.size(), seats_[0]);
+  } else {
+    team_.resize(threads_);
+    team_.run([&](std::size_t t) {
+      for (std::size_t first = 0, end = 0; first < list.size(); first = end) {
+        while (end < list.size() && list[end].colour == list[first].colour) ++end;
+        serve(first + team_.part(end - first, t), first + team_.part(end - first, t + 1), seats_[t]);
+        team_.meet();
+      }
+    });
+  }
+  Change change;
+  const Seat* first_failed = nullptr;
+  for (const Seat& seat : seats_) {
+    change.largest = std::max(change.largest, seat.change.largest);
+    change.size = std::max(change.size, seat.change.size);
+    if (seat.failed && (!first_failed || seat.failed < first_failed->failed)) first_failed = &seat;
+  }
+  for (const Block& block : list)
+    if (!block.asleep) change.square += block.square;
+  if (first_failed) {
+    change.code = first_failed->change.code;
+    failed_group_ = first_failed->failed->group;
+    report_ = first_failed->report;
   }
   return change;
 }
 
+Change Sweep::run(Blocks& blocks, const Conjugate& conjugate) {
+  return for_blocks(blocks, [&](Block& block, Seat& seat) {
+    if (block.asleep) return true;
+    if (conjugate.active) extrapolate(block, conjugate.beta);
+    if (!evaluate(block, seat)) return false;
+    scatter(block, seat);
+    return true;
+  });
+}
+
 Change Sweep::run_all(Blocks& blocks) {
-  Change change;
-  for (Block& block : blocks.list()) {
-    if (!evaluate(block, change)) return change;
-    scatter(block, change);
+  return for_blocks(blocks, [&](Block& block, Seat& seat) {
+    if (!evaluate(block, seat)) return false;
+    scatter(block, seat);
     for (std::size_t q = 0; q < block.count && block.asleep; ++q) block.asleep = has_not_acted(block, q);
-  }
-  return change;
+    return true;
+  });
 }
 
 ILAW_COUPLED_VERSIONS void Sweep::extrapolate(Block& block, double beta) const {
@@ -146,17 +201,17 @@ ILAW_COUPLED_VERSIONS void Sweep::extrapolate(Block& block, double beta) const {
 }
 
 // v_free = u - H r. Returns the largest velocity in it.
-ILAW_COUPLED_VERSIONS double Sweep::prepare(Block& block) {
+ILAW_COUPLED_VERSIONS double Sweep::prepare(Block& block, Seat& seat) const {
   const Layout& layout = *block.layout;
-  gather(block, v_free_.data());
+  gather(block, seat.v_free.data());
   const double* r = block.column(layout.impulse);
   double* asked = block.column(layout.asked);
   Lanes most{};
   with_form(block, [&](const auto& form) {
     for (std::size_t q = 0; q < padded(block.count); q += lane_count) {
       const auto made = form(q, read(form, r + q, block.stride));
-      const auto v = read(form, v_free_.data() + q, max_stride) - made;
-      put(v, v_free_.data() + q, max_stride);
+      const auto v = read(form, seat.v_free.data() + q, max_stride) - made;
+      put(v, seat.v_free.data() + q, max_stride);
       put(v, asked + q, block.stride);
       most = larger(larger(size(form, q, v), size(form, q, made)), most);
     }
@@ -164,38 +219,44 @@ ILAW_COUPLED_VERSIONS double Sweep::prepare(Block& block) {
   return largest(most);
 }
 
-bool Sweep::evaluate(Block& block, Change& change) {
+bool Sweep::evaluate(Block& block, Seat& seat) const {
   const Layout& layout = *block.layout;
-  const double size = prepare(block);
+  const double size = prepare(block, seat);
+  Change& change = seat.change;
   change.size = size > change.size ? size : change.size;
-  const Contacts::Call call{v_free_.data(), block.column(layout.delassus),
-                            block.stride,   answer_.data(),
-                            nullptr,        block.status,
-                            nullptr,        nullptr};
-  const std::int32_t code = problem_.group(block).evaluate(block, call, report_);
-  block.bad_count = code == ILAW_BAD_NODES ? report_.bad_count : 0;
-  block.first_bad = report_.first_bad_node;
-  block.reason = report_.reason;
+  const Contacts::Call call{seat.v_free.data(),
+                            block.column(layout.delassus),
+                            block.stride,
+                            seat.answer.data(),
+                            nullptr,
+                            block.status,
+                            nullptr,
+                            nullptr};
+  ilaw_report& report = seat.report;
+  const std::int32_t code = problem_.group(block).evaluate(block, call, report);
+  block.bad_count = code == ILAW_BAD_NODES ? report.bad_count : 0;
+  block.first_bad = report.first_bad_node;
+  block.reason = report.reason;
   // NaN, or below 0, would pass for no limit at all.
-  const bool has_step = report_.stable_velocity_step >= 0.0;
-  if (report_.stable_velocity_step > 0.0) stable_step_ = std::min(stable_step_, report_.stable_velocity_step);
+  const bool has_step = report.stable_velocity_step >= 0.0;
+  if (report.stable_velocity_step > 0.0)
+    seat.stable_step = std::min(seat.stable_step, report.stable_velocity_step);
   if (code >= 0 && has_step) return true;
   change.code = code < 0 ? code : ILAW_BAD_LIBRARY;
-  failed_group_ = block.group;
-  if (code >= 0) report_.reason = "a law reported a stable step that is below 0 or not a number";
+  if (code >= 0) report.reason = "a law reported a stable step that is below 0 or not a number";
   return false;
 }
 
-ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Change& change) {
+ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Seat& seat) const {
   const Layout& layout = *block.layout;
   const std::size_t n = padded(block.count), s = block.stride;
   double *r = block.column(layout.impulse), *dr = block.column(layout.change);
   for (std::size_t c = 0; c < static_cast<std::size_t>(layout.width); ++c)
-    for (std::size_t q = block.count; q < n; ++q) answer_[c * max_stride + q] = 0.0;
+    for (std::size_t q = block.count; q < n; ++q) seat.answer[c * max_stride + q] = 0.0;
   Lanes most{}, square{};
   with_form(block, [&](const auto& form) {
     for (std::size_t q = 0; q < n; q += lane_count) {
-      const auto answer = read(form, answer_.data() + q, max_stride), by = answer - read(form, r + q, s);
+      const auto answer = read(form, seat.answer.data() + q, max_stride), by = answer - read(form, r + q, s);
       put(answer, r + q, s);
       put(by, dr + q, s);
       const auto made = form(q, by);
@@ -203,8 +264,8 @@ ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Change& change) {
       square += dot(by, made);
     }
   });
-  change.largest = std::max(change.largest, largest(most));
-  change.square += sum(square);
+  seat.change.largest = std::max(seat.change.largest, largest(most));
+  block.square = sum(square);
   const Contacts& group = problem_.group(block);
   with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
     std::size_t q = 0;
@@ -219,12 +280,13 @@ ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Change& change) {
 
 bool Sweep::wake(Blocks& blocks) {
   bool woken = false;
+  Columns& v_free = seats_[0].v_free;
   for (Block& block : blocks.list()) {
     if (!block.asleep) continue;
-    gather(block, v_free_.data());
+    gather(block, v_free.data());
     const Contacts& group = problem_.group(block);
     for (std::size_t q = 0; q < block.count && block.asleep; ++q) {
-      const Vector v{v_free_[q], v_free_[max_stride + q], v_free_[2 * max_stride + q]};
+      const Vector v{v_free[q], v_free[max_stride + q], v_free[2 * max_stride + q]};
       if (group.is_in_reach(block, q, v)) block.asleep = false;
     }
     woken = woken || !block.asleep;

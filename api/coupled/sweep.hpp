@@ -8,6 +8,7 @@
 #include "blocks.hpp"
 #include "bodies.hpp"
 #include "contacts.hpp"
+#include "team.hpp"
 
 #include <array>
 #include <cstddef>
@@ -35,7 +36,9 @@ struct Change {
 
 class Sweep {
  public:
-  explicit Sweep(Problem& problem) : problem_(problem) {}
+  explicit Sweep(Problem& problem) : problem_(problem) { use(1); }
+  // Blocks of a color are evaluated by so many threads, with the bits of one.
+  void use(std::size_t threads);
 
   // Extrapolation of the impulses before the iteration: r += beta d, d = beta d + (last change of r).
   struct Conjugate {
@@ -61,38 +64,61 @@ class Sweep {
 
   const ilaw_report& last_report() const { return report_; }
   std::int32_t failed_group() const { return failed_group_; }
-  double stable_step() const { return stable_step_; }
+  double stable_step() const;
   void reset();
 
+  // Calls work(first, end) for parts of `count` bodies, on several threads if it is worth it.
+  template <class Work>
+  void share(std::size_t count, const Work& work) {
+    constexpr std::size_t few = 10000;
+    if (count < few) return work(std::size_t{0}, count);
+    team_.run([&](std::size_t t) { work(team_.part(count, t), team_.part(count, t + 1)); });
+  }
+
  private:
+  // Scratch and findings of a thread.
+  struct alignas(64) Seat {
+    alignas(64) Columns v_free{};
+    alignas(64) Columns answer{};
+    ilaw_report report{};
+    Change change;
+    double stable_step = 0.0;
+    const Block* failed = nullptr;
+  };
+  // Calls work(block, seat) for all blocks, those of a color on all threads, until it returns false.
+  template <class Work>
+  Change for_blocks(Blocks& blocks, const Work& work);
   void gather(const Block& block, const Body* bodies, double* velocity) const;
   void extrapolate(Block& block, double beta) const;
-  double prepare(Block& block);
-  bool evaluate(Block& block, Change& change);
-  void scatter(Block& block, Change& change);
+  double prepare(Block& block, Seat& seat) const;
+  bool evaluate(Block& block, Seat& seat) const;
+  void scatter(Block& block, Seat& seat) const;
 
-  alignas(64) Columns v_free_{};
-  alignas(64) Columns answer_{};
+  std::vector<Seat> seats_;
+  Team team_;  // of threads_ from the first iteration on that is worth it
+  std::size_t threads_ = 1;
   ilaw_report report_{};
   Problem& problem_;
-  double stable_step_ = 0.0;
   bool prefetches_ = false;
   std::int32_t failed_group_ = -1;
 };
 
-// Adds an impulse and its moment to a body's velocities.
+// Adds an impulse and its moment to a body's velocities. Bodies that cannot move are left alone, as contacts
+// that share them are worked on at once.
 template <class Visit>
 void with_velocities(Bodies& bodies, Kind kind, Visit&& visit) {
   Body* now = bodies.now();
   const auto add_linear = [now](std::int32_t b, const Vector& p, const Vector&) {
-    now[b].velocity = now[b].velocity + now[b].inverse_mass * p;
+    if (moves(now[b])) now[b].velocity = now[b].velocity + now[b].inverse_mass * p;
   };
   const auto add_sphere = [now](std::int32_t b, const Vector& p, const Vector& l) {
+    if (!moves(now[b])) return;
     now[b].velocity = now[b].velocity + now[b].inverse_mass * p;
     now[b].spin = now[b].spin + now[b].inverse_inertia * l;
   };
   const Inertia* inertia = bodies.inertia();
-  const auto add_tensor = [now, inertia](std::int32_t b, const Vector& p, const Vector& l) {
+  const auto add_tensor = [now, inertia, &bodies](std::int32_t b, const Vector& p, const Vector& l) {
+    if (!bodies.is_movable(b)) return;
     now[b].velocity = now[b].velocity + scaled(inertia[b].inverse_mass, p);
     now[b].spin = now[b].spin + inertia[b].inverse_inertia * l;
   };

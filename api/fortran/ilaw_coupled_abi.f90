@@ -66,12 +66,14 @@ module ilaw_coupled_abi
   end type
 
   type, bind(c) :: ilaw_coupled_options
-    integer(c_int32_t) :: struct_size = 40
+    integer(c_int32_t) :: struct_size = 48
     integer(c_int32_t) :: most_sweeps = 0
     real(c_double) :: tolerance = 0
     type(c_ptr) :: exchange = c_null_ptr
     real(c_double) :: speed = 0
     real(c_double) :: rounding = 0
+    integer(c_int32_t) :: threads = 0
+    integer(c_int32_t) :: reserved = 0
   end type
 
   type, bind(c) :: ilaw_coupled_report

@@ -116,6 +116,7 @@ struct Scene {
     ilaw_coupled_options options{};
     options.tolerance = tolerance;
     options.most_sweeps = most_sweeps;
+    options.threads = threads;
     return solver.solve(bodies(), c, options);
   }
 
@@ -145,7 +146,7 @@ struct Scene {
   }
 
   ilaw::interface law;
-  std::uint32_t form = ILAW_DELASSUS_FULL;
+  std::uint32_t form = ILAW_DELASSUS_FULL, threads = 0;
   ilaw::coupled solver;
   std::vector<double> v, w, v_before, w_before;
   std::vector<std::int32_t> body, counterpart;

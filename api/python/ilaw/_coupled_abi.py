@@ -90,6 +90,8 @@ class coupled_options(ctypes.Structure):
         ("exchange", POINTER(exchange)),
         ("speed", c_double),
         ("rounding", c_double),
+        ("threads", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 

@@ -354,6 +354,7 @@ class Solver(NotCopied):
         tolerance: float = 1e-10,
         speed: float = 0.0,
         rounding: float = 0.0,
+        threads: int = 1,
         exchange: Exchange | None = None,
         bad_nodes: str = "raise",
     ) -> Report:
@@ -362,8 +363,9 @@ class Solver(NotCopied):
         groups: contacts of one law each, all at the same bodies. time [s]: of the configuration that gaps belong
         to. Steps [s]: those of each interface unless given. tolerance: of the residual; reaching most_sweeps is
         no error, look at the residual. speed [m/s]: the residual is relative to no smaller velocity. rounding
-        [m/s]: a residual below it that iterations no longer lower counts as solved. bad_nodes: "raise" raises
-        BadNodes (after all others were solved), "report" says so in the report and the status alone.
+        [m/s]: a residual below it that iterations no longer lower counts as solved. threads: for some thousands
+        of contacts and more; the same bits for any number. bad_nodes: "raise" raises BadNodes (after all others
+        were solved), "report" says so in the report and the status alone.
         """
         if bad_nodes not in ("raise", "report"):
             raise InvalidArgument(f"bad_nodes: {bad_nodes!r}, expected 'raise' or 'report'")
@@ -380,6 +382,7 @@ class Solver(NotCopied):
         options = sized(_coupled_abi.coupled_options)
         options.most_sweeps, options.tolerance = whole("most_sweeps", most_sweeps, 0, 2**32 - 1), tolerance
         options.speed, options.rounding = speed, rounding
+        options.threads = whole("threads", threads, 0, 256)
         calls = None
         if exchange is not None:
             calls = _Calls(exchange, bodies.count)

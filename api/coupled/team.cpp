@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "team.hpp"
+
+#include <system_error>
+
+namespace ilaw::coupled {
+
+void Team::resize(std::size_t size) {
+  if (size == this->size()) return;
+  call_ = nullptr;
+  round_.fetch_add(1, std::memory_order_release);
+  round_.notify_all();
+  for (std::thread& thread : others_) thread.join();
+  others_.clear();
+  if (size < 2) return;
+  const std::uint32_t round = round_.load();
+  try {
+    for (std::size_t k = 1; k < size; ++k) others_.emplace_back([this, k, round] { serve(k, round); });
+  } catch (const std::system_error&) {  // as many as the system gives
+  }
+}
+
+void Team::serve(std::size_t thread, std::uint32_t seen) {
+  constexpr int tries = 2000;  // some microseconds: the next iteration is near
+  for (;;) {
+    for (int k = 0; k < tries && round_.load(std::memory_order_acquire) == seen; ++k)
+      std::this_thread::yield();
+    round_.wait(seen, std::memory_order_acquire);
+    seen = round_.load(std::memory_order_acquire);
+    if (!call_) return;
+    call_(work_, thread);
+    meet();
+  }
+}
+
+}  // namespace ilaw::coupled

@@ -1,0 +1,66 @@
+// team.hpp - the caller's thread and others beside it, which sleep while there is no work for them.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+namespace ilaw::coupled {
+
+class Team {
+ public:
+  Team() = default;
+  ~Team() { resize(1); }
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+
+  // Threads, that of the caller among them; fewer where the system gives no more.
+  void resize(std::size_t size);
+  std::size_t size() const { return others_.size() + 1; }
+
+  // Calls work(thread) on all threads, 0 being the caller's, and returns when all are done.
+  template <class Work>
+  void run(const Work& work) {
+    if (others_.empty()) return work(std::size_t{0});
+    work_ = &work;
+    call_ = [](const void* of, std::size_t thread) { (*static_cast<const Work*>(of))(thread); };
+    round_.fetch_add(1, std::memory_order_release);
+    round_.notify_all();
+    work(std::size_t{0});
+    meet();
+  }
+  // Within work, on all threads: none goes on before the last has come.
+  void meet() {
+    if (others_.empty()) return;
+    const std::uint32_t meeting = meeting_.load(std::memory_order_relaxed);
+    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == size()) {
+      arrived_.store(0, std::memory_order_relaxed);
+      meeting_.store(meeting + 1, std::memory_order_release);
+      return;
+    }
+    wait_until(meeting_, meeting);
+  }
+  // The part of `count` things that a thread works on: from part(count, t) to part(count, t + 1).
+  std::size_t part(std::size_t count, std::size_t thread) const { return count * thread / size(); }
+
+ private:
+  void serve(std::size_t thread, std::uint32_t seen);
+  // Until it is another number. In turns with other threads where it takes long, as on a busy processor.
+  static void wait_until(const std::atomic<std::uint32_t>& number, std::uint32_t old) {
+    constexpr int tries = 4000;  // some microseconds
+    for (int k = 0; number.load(std::memory_order_acquire) == old; ++k)
+      if (k > tries) std::this_thread::yield();
+  }
+
+  alignas(64) std::atomic<std::uint32_t> meeting_{0};
+  std::atomic<std::uint32_t> round_{0};
+  const void* work_ = nullptr;
+  void (*call_)(const void*, std::size_t) = nullptr;  // null: the threads end
+  std::vector<std::thread> others_;
+  alignas(64) std::atomic<std::size_t> arrived_{0};  // all write it: apart from what they wait for
+};
+
+}  // namespace ilaw::coupled
