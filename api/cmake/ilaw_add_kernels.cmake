@@ -4,14 +4,15 @@
 # builds.
 set(ILAW_KERNELS OFF CACHE STRING "Kernels for GPUs: ON for all laws that ask for them, or names of laws")
 
-# Each operation is rounded, as on the CPU. The standard headers are the host's.
+# Each operation is rounded, as on the CPU. The standard headers are the host's. PTX: a law's step is compiled into the
+# kernel, whatever its length, as a call would take the node out of the registers.
 macro(ilaw_set_kernel_flags)
   set(ILAW_KERNEL_FLAGS -std=c++20 -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-exceptions -fno-rtti
       -fno-threadsafe-statics -DILAW_KIT_DEVICE -DILAW_KIT_LEVEL=device
       -include ilaw/kit/device/prelude.hpp -Wno-bitwise-instead-of-logical -Wno-c++11-narrowing
       -Wno-unknown-cuda-version)
   set(ILAW_KERNEL_FLAGS_PTX -x cuda --cuda-device-only -nocudainc -nocudalib --cuda-gpu-arch=sm_70 -Xclang
-      -target-feature -Xclang +ptx63 -S)
+      -target-feature -Xclang +ptx63 -mllvm -inline-threshold=1000 -S)
   set(ILAW_KERNEL_FLAGS_SPIRV -x hip --offload=spirv64 --cuda-device-only -nogpulib -nogpuinc -emit-llvm -c)
 endmacro()
 

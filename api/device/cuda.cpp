@@ -148,6 +148,7 @@ class Cuda : public Driver {
     owns_context_ = true;
   }
   ~Cuda() override {
+    images_.clear();  // while the context lives
     if (owns_context_) cuda_.primary_release(device_);
   }
   Cuda(const Cuda&) = delete;

@@ -45,6 +45,7 @@ class LoadedImages {
     if (!module) module = make();
     return module;
   }
+  void clear() { modules_.clear(); }
 
  private:
   std::map<std::pair<std::size_t, std::size_t>, std::shared_ptr<Module>> modules_;

@@ -1,15 +1,14 @@
 // Time per node of laws on a device, all arrays there, beside the device's own triad. Usage:
-// device_bench cuda|opencl FOLDER [NODES]; FOLDER holds the laws.
+// device_bench cuda|opencl [NODES [CASE...]]
+#include "device_runner.hpp"
 #include "driver.hpp"
 #include "triad.hpp"
-
-#include <ilaw/arrays.hpp>
-#include <ilaw/loader.hpp>
 
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <random>
+#include <set>
 
 extern "C" {
 #if defined(ILAW_HAS_PTX)
@@ -25,7 +24,7 @@ namespace {
 constexpr int repeats = 50;
 constexpr double s_per_ns = 1e-9;
 
-// Arrays of a device, filled with random numbers.
+// Arrays of a device.
 class Arrays {
  public:
   Arrays(ilaw::device::Driver& driver, std::int64_t nodes) : driver_(driver), nodes_(nodes) {}
@@ -35,22 +34,48 @@ class Arrays {
   Arrays(const Arrays&) = delete;
   Arrays& operator=(const Arrays&) = delete;
 
-  double* add(int components, double low, double high) {
-    std::vector<double> values(static_cast<std::size_t>(nodes_ * components));
-    std::uniform_real_distribution<double> uniform(low, high);
-    for (double& value : values) value = uniform(random_);
+  double* add(const std::vector<double>& values) {
     auto* const there = static_cast<double*>(driver_.allocate(values.size() * sizeof(double)));
     all_.push_back(there);
     driver_.write(driver_.own_queue(), there, values.data(), values.size() * sizeof(double));
     return there;
   }
+  double* add_zeros(int components) {
+    return add(std::vector<double>(static_cast<std::size_t>(nodes_ * components)));
+  }
+  std::int64_t nodes() const { return nodes_; }
   const std::vector<void*>& all() const { return all_; }
 
  private:
   ilaw::device::Driver& driver_;
   std::int64_t nodes_;
-  std::mt19937_64 random_{1};
   std::vector<void*> all_;
+};
+
+// The nodes that ilaw bench draws: half touch, half of these are pressed, and the others have moved freely.
+struct Inputs {
+  explicit Inputs(Arrays& arrays) {
+    const auto n = static_cast<std::size_t>(arrays.nodes());
+    std::vector<double> free(3 * n), previous(3 * n), h(n), gaps(n), areas(n);
+    std::mt19937_64 random(1);
+    const auto draw = [&](double low, double high) {
+      return low + (high - low) * (static_cast<double>(random() >> 11) * 0x1p-53);
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool touches = draw(0.0, 1.0) < 0.5;
+      for (std::size_t c = 0; c < 3; ++c) previous[3 * i + c] = free[3 * i + c] = draw(-1.0, 1.0);
+      if (touches) previous[3 * i] = 0.0;
+      h[i] = draw(1.0, 3.0);
+      gaps[i] = touches ? draw(-1e-4, 0.0) : draw(0.01, 0.1);
+      areas[i] = 1.0;
+    }
+    v_free = arrays.add(free);
+    v_previous = arrays.add(previous);
+    delassus = arrays.add(h);
+    gap = arrays.add(gaps);
+    area = arrays.add(areas);
+  }
+  double *v_free, *v_previous, *delassus, *gap, *area;
 };
 
 // The least of several, each of so many launches.
@@ -70,8 +95,8 @@ double seconds_per_launch(ilaw::device::Driver& driver, const void* any, Launch 
 
 double triad_bytes_per_second(ilaw::device::Driver& driver, std::int64_t nodes) {
   Arrays arrays(driver, nodes);
-  double* const a = arrays.add(1, 0.0, 1.0);
-  ilaw::testing::Triad triad{nodes, a, arrays.add(1, 0.0, 1.0), arrays.add(1, 0.0, 1.0), 0.5};
+  double* const a = arrays.add_zeros(1);
+  ilaw::testing::Triad triad{nodes, a, arrays.add_zeros(1), arrays.add_zeros(1), 0.5};
   ilaw_device_image image{sizeof(ilaw_device_image), driver.image_kind(), nullptr, nullptr};
 #if defined(ILAW_HAS_PTX)
   if (image.kind == ILAW_IMAGE_PTX) image.begin = ilaw_bench_ptx, image.end = ilaw_bench_ptx_end;
@@ -86,70 +111,61 @@ double triad_bytes_per_second(ilaw::device::Driver& driver, std::int64_t nodes) 
   return 24.0 * static_cast<double>(nodes) / seconds;
 }
 
-struct Measured {
-  const char* law;
-  std::vector<std::pair<const char*, double>> parameters;
-};
-
-void measure(ilaw::device::Driver& driver, const std::string& folder, const Measured& given,
-             std::int64_t nodes, double triad) {
-  ilaw::parameters arguments;
-  for (const auto& [name, value] : given.parameters) arguments.number(name, value);
-  ilaw_setup setup{};
-  setup.struct_size = sizeof setup;
-  setup.dimension = 3;
-  setup.delassus_form = ILAW_DELASSUS_SCALAR;
-  setup.frame = ILAW_FRAME_LOCAL;
-  setup.numbers = ILAW_NUMBERS_DOUBLE;
-  arguments.give(setup);
-  const ilaw::interface law(ilaw::library(folder + "/" + given.law + ".so"), given.law, setup);
+// A node's bytes, its time, and its share of the triad's speed.
+void measure(ilaw::device::Driver& driver, const ilaw::testing::LawCase& given, const Inputs& inputs,
+             Arrays& arrays, double triad) {
+  ilaw::testing::SetupBuilder setup(given.parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_LOCAL, false);
+  const ilaw::interface law = make_law(given.law, setup);
   const ilaw_instance_info info = law.info();
   const auto* const device = static_cast<const ilaw_device_law*>(law.law().extension(ILAW_DEVICE));
   const char* reason = nullptr;
-  const char* const name = device ? device->kernel(law.instance(), &reason) : nullptr;
+  const char* const name = device->kernel(law.instance(), &reason);
   if (!name) {
-    std::printf("%-10s not served: %s\n", given.law, reason ? reason : "no kernels");
+    std::printf("%-24s not served: %s\n", given.name.c_str(), reason);
     return;
   }
-  Arrays arrays(driver, nodes);
+  const std::int64_t nodes = arrays.nodes();
   int numbers = 0;
-  const auto input = [&](int components, double low, double high) {
+  const auto input = [&](const double* values, int components) {
     numbers += components;
-    return ilaw::input(arrays.add(components, low, high), components, 1);
+    return ilaw::input(values, components, 1);
   };
   ilaw_batch b{};
   b.struct_size = sizeof b;
   b.node_count = nodes;
   b.velocity_step = b.position_step = 1e-3;
-  b.v_free = input(3, -1.0, 1.0);
-  b.delassus = input(1, 0.5, 2.0);
-  if (info.inputs & ILAW_INPUT_GAP) b.gap = input(1, -1e-3, 1e-4);
-  if (info.inputs & ILAW_INPUT_V_PREVIOUS) b.v_previous = input(3, -1.0, 1.0);
-  if (info.inputs & ILAW_INPUT_AREA) b.area = input(1, 0.5, 2.0);
+  b.v_free = input(inputs.v_free, 3);
+  b.delassus = input(inputs.delassus, 1);
+  if (info.inputs & ILAW_INPUT_GAP) b.gap = input(inputs.gap, 1);
+  if (info.inputs & ILAW_INPUT_V_PREVIOUS) b.v_previous = input(inputs.v_previous, 3);
+  if (info.inputs & ILAW_INPUT_AREA) b.area = input(inputs.area, 1);
+  Arrays own(driver, nodes);
   const int states = static_cast<int>(info.state_size);
   if (states > 0) {
-    double* const state = arrays.add(states, 0.0, 0.0);
+    double* const state = own.add_zeros(states);
     b.state_in = ilaw::input(state, states, 1);
     b.state_out = ilaw::output(state, states, 1);
   }
-  double* const impulse = arrays.add(3, 0.0, 0.0);
+  double* const impulse = own.add_zeros(3);
   b.impulse = ilaw::output(impulse, 3, 1);
   numbers += 3 + 2 * states;
+  std::vector<void*> pointers = arrays.all();
+  pointers.insert(pointers.end(), own.all().begin(), own.all().end());
   std::vector<unsigned char> argument(device->argument_size);
   ilaw_report report{};
   report.struct_size = sizeof report;
   if (device->argument(law.instance(), &b, nullptr, argument.data(), &report) != ILAW_OK) {
-    std::printf("%-10s refused: %s\n", given.law, report.reason);
+    std::printf("%-24s refused: %s\n", given.name.c_str(), report.reason);
     return;
   }
   for (std::uint32_t k = 0; k < device->image_count; ++k) {
     if (device->images[k]->kind != driver.image_kind()) continue;
     const auto kernel = driver.load(*device->images[k], name);
     const double seconds = seconds_per_launch(driver, impulse, [&] {
-      kernel->launch(driver.own_queue(), nodes, argument.data(), argument.size(), arrays.all());
+      kernel->launch(driver.own_queue(), nodes, argument.data(), argument.size(), pointers);
     });
     const double bytes = 8.0 * numbers, n = static_cast<double>(nodes);
-    std::printf("%-10s %3.0f bytes a node  %8.4f ns a node  %5.2f of the triad\n", given.law, bytes,
+    std::printf("%-24s %3.0f bytes a node  %8.4f ns a node  %5.2f of the triad\n", given.name.c_str(), bytes,
                 seconds / n / s_per_ns, bytes * n / seconds / triad);
   }
 }
@@ -171,22 +187,23 @@ void measure_transfer(ilaw::device::Driver& driver, std::int64_t nodes) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::fprintf(stderr, "usage: device_bench cuda|opencl FOLDER [NODES]\n");
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: device_bench cuda|opencl [NODES [CASE...]]\n");
     return 2;
   }
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // a law's kernels may take a minute to load
   try {
     const auto driver = std::strcmp(argv[1], "cuda") == 0 ? ilaw::device::open_cuda(0, nullptr)
                                                           : ilaw::device::open_opencl(0, nullptr, nullptr);
-    const std::int64_t nodes = argc > 3 ? std::atoll(argv[3]) : 10'000'000;
+    const std::int64_t nodes = argc > 2 ? std::atoll(argv[2]) : 10'000'000;
+    const std::set<std::string> chosen(argv + std::min(argc, 3), argv + argc);
     const double triad = triad_bytes_per_second(*driver, nodes);
     std::printf("%s: %lld nodes, triad %.1f GB/s\n", driver->name().c_str(), static_cast<long long>(nodes),
                 triad * 1e-9);
-    const Measured all[] = {{"contact", {}},
-                            {"coulomb", {{"friction", 0.3}}},
-                            {"postit", {{"friction", 0.2}, {"memory", 0.0}}},
-                            {"tie", {}}};
-    for (const Measured& given : all) measure(*driver, argv[2], given, nodes, triad);
+    Arrays arrays(*driver, nodes);
+    const Inputs inputs(arrays);
+    for (const ilaw::testing::LawCase& given : ilaw::testing::served_cases())
+      if (chosen.empty() || chosen.contains(given.name)) measure(*driver, given, inputs, arrays, triad);
     measure_transfer(*driver, nodes);
   } catch (const std::exception& error) {
     std::printf("no measurement: %s\n", error.what());

@@ -12,6 +12,24 @@
 
 namespace ilaw::testing {
 
+// Whether this build gave the law kernels (ILAW_KERNELS).
+inline bool has_kernels(const std::string& name) {
+  const ilaw::library library(plugin_file(name));
+  const ilaw_law& law = *library.law(name);
+  return law.extension && law.extension(ILAW_DEVICE);
+}
+
+// Windows and tables that a step reads are not served.
+inline std::vector<LawCase> served_cases() {
+  std::vector<LawCase> cases;
+  for (LawCase& given : law_cases("contract")) {
+    if (given.law == "table_friction" || !has_kernels(given.law)) continue;
+    if (given.parameters.numbers.contains("memory")) given.parameters.numbers["memory"] = 0.0;
+    cases.push_back(std::move(given));
+  }
+  return cases;
+}
+
 // The driver under test: OpenCL, or what ILAW_TEST_DRIVER names.
 inline ilaw_kind tested_driver() {
   const char* const name = std::getenv("ILAW_TEST_DRIVER");

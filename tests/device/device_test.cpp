@@ -11,21 +11,9 @@
 namespace ilaw::testing {
 namespace {
 
-// Whether this build gave the law kernels (ILAW_KERNELS).
-bool has_kernels(const std::string& name) {
-  const ilaw::library library(plugin_file(name));
-  const ilaw_law& law = *library.law(name);
-  return law.extension && law.extension(ILAW_DEVICE);
-}
-
-// Windows and tables that a step reads are not served.
-std::vector<LawCase> served_cases() {
-  std::vector<LawCase> cases;
-  for (LawCase& given : law_cases("contract")) {
-    if (given.law == "table_friction" || !has_kernels(given.law)) continue;
-    if (given.parameters.numbers.contains("memory")) given.parameters.numbers["memory"] = 0.0;
-    cases.push_back(std::move(given));
-  }
+// And parameters per node, in time and along two axes.
+std::vector<LawCase> cases_to_compare() {
+  std::vector<LawCase> cases = served_cases();
   const auto add = [&](const char* name, const Parameters& parameters) {
     cases.push_back({"coulomb", name, parameters, {}});
   };
@@ -226,7 +214,7 @@ TEST_P(DeviceBits, AreThoseOfTheLibraryHere) {
   compare_all(GetParam(), [&](Scene& scene) { return std::make_unique<Here>(scene, law); });
 }
 #endif
-INSTANTIATE_TEST_SUITE_P(Laws, DeviceBits, ::testing::ValuesIn(served_cases()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Laws, DeviceBits, ::testing::ValuesIn(cases_to_compare()), name_of_case);
 
 // ---- sums
 

@@ -10,9 +10,9 @@ if [ ! -x "$build/bin/device_test" ] || [ ! -x "$build/bin/device_bench" ]; then
 fi
 for driver in cuda opencl; do
   echo "== $driver"
-  bench=$("$build/bin/device_bench" $driver "$build/lib/ilaw" 1000 2>&1) || { echo "$bench"; continue; }
+  bench=$("$build/bin/device_bench" $driver 1000 none 2>&1) || { echo "$bench"; continue; }
   found=yes
   ILAW_TEST_DRIVER=$driver "$build/bin/device_test" --gtest_brief=1
-  "$build/bin/device_bench" $driver "$build/lib/ilaw" "$nodes"
+  "$build/bin/device_bench" $driver "$nodes"
 done
 [ -n "${found:-}" ] || { echo "on_a_card: no device here"; exit 77; }
