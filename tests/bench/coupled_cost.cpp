@@ -1,8 +1,8 @@
 // The cost of an iteration of coupled contacts, and of a solve besides: grains on a lattice, each a
 // little off its place, with friction and transverse H.
 //
-// Usage: ilaw_bench_coupled_cost GRAINS... Prints nanoseconds per contact: medians of the given number of
-// runs.
+// Usage: ilaw_bench_coupled_cost GRAINS... Prints nanoseconds per contact, of one thread's processor time,
+// then of the clock with a thread per processor: medians of some runs.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ilaw/arrays.hpp>
 #include <ilaw/coupled.hpp>
@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <random>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -23,16 +24,16 @@ namespace {
 constexpr double radius = 0.5, spacing = 0.995, step = 1e-3;
 constexpr int runs = 7;
 
-double cpu_seconds() {
+double seconds(std::uint32_t threads) {
   std::timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  clock_gettime(threads == 1 ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 struct Pile {
   explicit Pile(int grains);
   // Seconds of a solve from rest with this number of iterations.
-  double solve(const ilaw::interface& law, std::uint32_t iterations);
+  double solve(const ilaw::interface& law, std::uint32_t iterations, std::uint32_t threads);
 
   std::vector<double> v, w, velocity, spin, gap, normal, arm, other_arm, impulse;
   std::vector<std::int32_t> body, counterpart;
@@ -77,7 +78,7 @@ Pile::Pile(int grains) {
   impulse.resize(normal.size());
 }
 
-double Pile::solve(const ilaw::interface& law, std::uint32_t iterations) {
+double Pile::solve(const ilaw::interface& law, std::uint32_t iterations, std::uint32_t threads) {
   const double inverse_mass = 1.0, inverse_inertia = 2.5 / (radius * radius);
   std::fill(impulse.begin(), impulse.end(), 0.0);
   ilaw_batch batch{};
@@ -104,9 +105,10 @@ double Pile::solve(const ilaw::interface& law, std::uint32_t iterations) {
   ilaw_coupled_options options{};
   options.most_sweeps = iterations;
   options.tolerance = 1e-300;
-  const double start = cpu_seconds();
+  options.threads = threads;
+  const double start = seconds(threads);
   solver.solve(bodies, contacts, options);
-  return cpu_seconds() - start;
+  return seconds(threads) - start;
 }
 
 double median(std::vector<double> values) {
@@ -132,6 +134,21 @@ ilaw::interface friction() {
   return {ilaw::library("coulomb"), "", setup};
 }
 
+void measure(Pile& pile, const ilaw::interface& law, std::uint32_t threads) {
+  constexpr std::uint32_t least_sweeps = 5, most_sweeps = 55;
+  std::vector<double> each, once;
+  for (int run = 0; run < runs; ++run) {
+    const double first = pile.solve(law, least_sweeps, threads),
+                 second = pile.solve(law, most_sweeps, threads);
+    const double iteration = (second - first) / (most_sweeps - least_sweeps);
+    const double unit = 1e9 / static_cast<double>(pile.body.size());
+    each.push_back(iteration * unit);
+    once.push_back((first - least_sweeps * iteration) * unit);
+  }
+  std::printf("%zu grains, %zu contacts, %u threads: an iteration %.1f ns a contact, once a solve %.0f ns\n",
+              pile.v.size() / 3, pile.body.size(), threads, median(each), median(once));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -140,19 +157,11 @@ int main(int argc, char** argv) {
     return 2;
   }
   const ilaw::interface law = friction();
+  const std::uint32_t processors = std::thread::hardware_concurrency();
   for (int i = 1; i < argc; ++i) {
     Pile pile(std::atoi(argv[i]));
-    constexpr std::uint32_t least_sweeps = 5, most_sweeps = 55;
-    std::vector<double> each, once;
-    for (int run = 0; run < runs; ++run) {
-      const double first = pile.solve(law, least_sweeps), second = pile.solve(law, most_sweeps);
-      const double iteration = (second - first) / (most_sweeps - least_sweeps);
-      const double unit = 1e9 / static_cast<double>(pile.body.size());
-      each.push_back(iteration * unit);
-      once.push_back((first - least_sweeps * iteration) * unit);
-    }
-    std::printf("%zu grains, %zu contacts: an iteration %.1f ns a contact, once a solve %.0f ns\n",
-                pile.v.size() / 3, pile.body.size(), median(each), median(once));
+    measure(pile, law, 1);
+    if (processors > 1) measure(pile, law, processors);
   }
   return 0;
 }
