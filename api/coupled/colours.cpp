@@ -21,28 +21,25 @@ void Colours::assign(const Contacts& contacts, std::int32_t group, const Bodies&
 // By body, then by counterpart. Buckets are short: a body has few contacts.
 void Colours::sort(const Contacts& contacts, const Bodies& bodies) {
   const auto count = static_cast<std::size_t>(contacts.count());
-  const auto other = [&](std::int32_t k) {
-    return bodies.rank(contacts.end(k, contacts.body_count(), bodies));
+  const auto rank_of = [&](std::size_t k, std::uint32_t e) {
+    return bodies.rank(contacts.end(static_cast<std::int64_t>(k), e));
   };
   sorted_.resize(count);
   start_.assign(static_cast<std::size_t>(bodies.count()) + 2, 0);
-  for (std::size_t k = 0; k < count; ++k)
-    ++start_[static_cast<std::size_t>(bodies.rank(contacts.end(static_cast<std::int64_t>(k), 0, bodies))) +
-             1];
+  for (std::size_t k = 0; k < count; ++k) ++start_[static_cast<std::size_t>(rank_of(k, 0)) + 1];
   for (std::size_t b = 1; b < start_.size(); ++b) start_[b] += start_[b - 1];
-  colour_.resize(count);  // the place of the next of a bucket
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto rank =
-        static_cast<std::size_t>(bodies.rank(contacts.end(static_cast<std::int64_t>(k), 0, bodies)));
-    sorted_[static_cast<std::size_t>(start_[rank]++)] = static_cast<std::int32_t>(k);
-  }
+  for (std::size_t k = 0; k < count; ++k)
+    sorted_[static_cast<std::size_t>(start_[static_cast<std::size_t>(rank_of(k, 0))]++)] =
+        static_cast<std::int32_t>(k);
+  const auto comes_first = [&](std::int32_t x, std::int32_t y) {
+    const std::int32_t of_x = rank_of(static_cast<std::size_t>(x), contacts.body_count()),
+                       of_y = rank_of(static_cast<std::size_t>(y), contacts.body_count());
+    return of_x != of_y ? of_x < of_y : x < y;
+  };
   std::int32_t first = 0;
   for (std::size_t b = 0; b + 1 < start_.size(); ++b) {
-    const std::int32_t end = start_[b];
-    if (end - first > 1)
-      std::stable_sort(sorted_.begin() + first, sorted_.begin() + end,
-                       [&](std::int32_t x, std::int32_t y) { return other(x) < other(y); });
-    first = end;
+    std::sort(sorted_.begin() + first, sorted_.begin() + start_[b], comes_first);
+    first = start_[b];
   }
 }
 
@@ -57,7 +54,7 @@ void Colours::add_blocks(const std::vector<std::int32_t>& list, const Contacts& 
     for (; next_block_ < blocks.list().size(); ++next_block_) blocks.list()[next_block_].asleep = asleep;
     for (std::size_t i = first; i < first + count; ++i)
       for (std::uint32_t e = 0; e < contacts.ends(); ++e)
-        used_[static_cast<std::size_t>(contacts.end(list[i], e, bodies))] = 0;
+        used_[static_cast<std::size_t>(contacts.end(list[i], e))] = 0;
   }
 }
 
@@ -69,11 +66,11 @@ void Colours::add_chunk(const std::int32_t* list, std::size_t count, const Conta
   for (std::size_t i = 0; i < count; ++i) {
     std::uint64_t taken = 0;
     for (std::uint32_t e = 0; e < contacts.ends(); ++e)
-      if (const std::int32_t body = contacts.end(list[i], e, bodies); bodies.is_movable(body))
+      if (const std::int32_t body = contacts.end(list[i], e); bodies.is_movable(body))
         taken |= used_[static_cast<std::size_t>(body)];
     const int colour = std::min(std::countr_one(taken), serial);
     for (std::uint32_t e = 0; e < contacts.ends(); ++e)
-      used_[static_cast<std::size_t>(contacts.end(list[i], e, bodies))] |= std::uint64_t{1} << colour;
+      used_[static_cast<std::size_t>(contacts.end(list[i], e))] |= std::uint64_t{1} << colour;
     colour_[i] = colour;
     ++first[static_cast<std::size_t>(colour) + 1];
   }
@@ -88,7 +85,7 @@ void Colours::add_chunk(const std::int32_t* list, std::size_t count, const Conta
     ++next_colour_;
     for (std::size_t at = first[c]; at < first[c + 1]; at += most) {
       if (c == serial) ++next_colour_;
-      blocks.add(contacts.layout(), group, next_colour_, std::min(most, first[c + 1] - at));
+      blocks.add(contacts.layout(), group, next_colour_, std::min(most, first[c + 1] - at)).order = base + at;
     }
   }
 }

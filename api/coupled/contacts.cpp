@@ -54,6 +54,7 @@ const char* Contacts::open(const ilaw_contacts& given, const Bodies& bodies) {
   for (const char* reason : {complaint(), complaint_of_law(bodies), complaint_of_bodies(bodies)})
     if (reason) return reason;
   lay_out(bodies);
+  read_ends(bodies);
   for (std::int64_t k = 0; k < count(); ++k)
     if (const char* reason = complaint_of_contact(k, bodies)) return reason;
   return nullptr;
@@ -137,22 +138,28 @@ const char* Contacts::complaint_of_bodies(const Bodies& bodies) const {
 const char* Contacts::complaint_of_contact(std::int64_t k, const Bodies& bodies) const {
   if (given_.body[k * body_count_] < theirs_.index_base) return "a contact names a body that is not there";
   for (std::uint32_t e = 0; e < ends(); ++e)
-    if (end(k, e, bodies) > bodies.wall()) return "a contact names a body that is not there";
+    if (end(k, e) > bodies.wall()) return "a contact names a body that is not there";
   for (std::uint32_t i = 0; i < body_count_; ++i)
     for (std::uint32_t j = body_count_; j < ends(); ++j)
-      if (const std::int32_t body = end(k, i, bodies); body != bodies.wall() && body == end(k, j, bodies))
+      if (const std::int32_t body = end(k, i); body != bodies.wall() && body == end(k, j))
         return "a contact of a body with itself";
   return nullptr;
 }
 
-// Beyond Bodies::wall() where it names none.
-std::int32_t Contacts::end(std::int64_t k, std::uint32_t e, const Bodies& bodies) const {
-  const std::int64_t given = e < body_count_
-                                 ? std::int64_t{given_.body[k * body_count_ + e]}
-                                 : std::int64_t{given_.counterpart[k * counterpart_count_ + e - body_count_]};
-  const std::int64_t index = given - theirs_.index_base;
-  if (index < 0) return bodies.wall();
-  return index >= bodies.count() ? bodies.wall() + 1 : static_cast<std::int32_t>(index);
+// Beyond Bodies::wall() where the host names no body of theirs.
+void Contacts::read_ends(const Bodies& bodies) {
+  ends_.resize(static_cast<std::size_t>(count()) * ends());
+  const auto read = [&](const std::int32_t* given, std::uint32_t side, std::uint32_t first) {
+    for (std::int64_t k = 0; k < count(); ++k)
+      for (std::uint32_t i = 0; i < side; ++i) {
+        const std::int64_t index = std::int64_t{given[k * side + i]} - theirs_.index_base;
+        std::int32_t& end = ends_[static_cast<std::size_t>(k) * ends() + first + i];
+        end = index < 0 ? bodies.wall() : bodies.wall() + 1;
+        if (index >= 0 && index < bodies.count()) end = static_cast<std::int32_t>(index);
+      }
+  };
+  read(given_.body, body_count_, 0);
+  read(given_.counterpart, counterpart_count_, body_count_);
 }
 
 bool Contacts::is_weighted() const {
@@ -212,11 +219,11 @@ Vector Contacts::start(const ilaw_output& a, std::int64_t k) const {
 }
 
 Vector Contacts::relative(std::int64_t k, const Bodies& bodies) const {
-  const Body &x = bodies.now()[end(k, 0, bodies)], &y = bodies.now()[end(k, 1, bodies)];
+  const Body &x = bodies.now()[end(k, 0)], &y = bodies.now()[end(k, 1)];
   Vector u = x.velocity - y.velocity - vector(given_.wall_velocity, k, dimension_);
   if (bodies.rotate()) {
     u = u + cross(x.spin, vector(given_.arm, k, 3));
-    if (end(k, 1, bodies) != bodies.wall()) u = u - cross(y.spin, vector(given_.counterpart_arm, k, 3));
+    if (end(k, 1) != bodies.wall()) u = u - cross(y.spin, vector(given_.counterpart_arm, k, 3));
   }
   return u;
 }
@@ -240,7 +247,7 @@ bool Contacts::is_in_reach(const Block& block, std::size_t lane, const Vector& v
 }
 
 bool Contacts::fill(Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const {
-  for (std::uint32_t e = 0; e < ends(); ++e) block.ends[e * block.stride + lane] = end(k, e, bodies);
+  for (std::uint32_t e = 0; e < ends(); ++e) block.ends[e * block.stride + lane] = end(k, e);
   block.contact[lane] = static_cast<std::int32_t>(k);
   const Vector normal = vector(theirs_.normal, k, dimension_);
   block.put(layout_.normal, lane, normal);
@@ -249,7 +256,7 @@ bool Contacts::fill(Block& block, std::size_t lane, std::int64_t k, const Bodies
   for (int c = 0; c < layout_.width; ++c)
     block.column(layout_.direction + c)[lane] = block.column(layout_.change + c)[lane] = 0.0;
   if (layout_.arm >= 0) {
-    const bool is_wall = kind_ != Kind::weighted && end(k, 1, bodies) == bodies.wall();
+    const bool is_wall = kind_ != Kind::weighted && end(k, 1) == bodies.wall();
     const Vector arm = vector(given_.arm, k, 3);
     const Vector other = is_wall ? Vector{} : vector(given_.counterpart_arm, k, 3);
     if (is_transverse() && (leads_aside(arm, normal) || leads_aside(other, normal))) return false;

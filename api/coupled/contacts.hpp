@@ -29,7 +29,9 @@ class Contacts {
   bool asks_balance() const { return asks_energy() || theirs_.amounts; }
 
   // Index of end e of contact k: the first body_count() are of the first side. Bodies::wall() where none is.
-  std::int32_t end(std::int64_t k, std::uint32_t e, const Bodies& bodies) const;
+  std::int32_t end(std::int64_t k, std::uint32_t e) const {
+    return ends_[static_cast<std::size_t>(k) * ends() + e];
+  }
   std::uint32_t ends() const { return static_cast<std::uint32_t>(layout_.ends); }
   // Whether the contact is open, cannot close at its present velocity, and starts without impulse, and the
   // law permits to leave it out.
@@ -66,6 +68,7 @@ class Contacts {
   const char* complaint_of_bodies(const Bodies& bodies) const;
   const char* complaint_of_contact(std::int64_t k, const Bodies& bodies) const;
   void lay_out(const Bodies& bodies);
+  void read_ends(const Bodies& bodies);
   void fill_weights(Block& block, std::size_t lane, std::int64_t k) const;
   void fill_delassus(Block& block, std::size_t lane, const Bodies& bodies) const;
   void fill_spin_delassus(Block& block, std::size_t lane, double j_x, double j_y) const;
@@ -83,6 +86,7 @@ class Contacts {
   std::uint32_t dimension_ = 3, body_count_ = 1, counterpart_count_ = 1;
   Kind kind_ = Kind::point;
   Layout layout_;
+  std::vector<std::int32_t> ends_;
 };
 
 }  // namespace ilaw::coupled

@@ -29,7 +29,6 @@ std::int32_t Islands::root(std::int32_t body) {
 }
 
 void Islands::find(const Blocks& blocks, const Problem& problem) {
-  join(blocks, problem);
   label(blocks, problem);
   sort(blocks);
 }
@@ -53,6 +52,7 @@ void Islands::join(const Blocks& blocks, const Problem& problem) {
 }
 
 void Islands::label(const Blocks& blocks, const Problem& problem) {
+  join(blocks, problem);
   label_of_root_.assign(joined_to_.size(), -1);
   labels_.clear();
   first_.assign(1, 0);

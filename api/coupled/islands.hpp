@@ -13,6 +13,8 @@ namespace ilaw::coupled {
 
 class Islands {
  public:
+  // Labels alone, and with the contacts of each island.
+  void label(const Blocks& blocks, const Problem& problem);
   void find(const Blocks& blocks, const Problem& problem);
   std::int32_t count() const { return static_cast<std::int32_t>(first_.size()) - 1; }
   // Contacts of an island that are not asleep, in the order of blocks.
@@ -23,7 +25,6 @@ class Islands {
  private:
   std::int32_t root(std::int32_t body);
   void join(const Blocks& blocks, const Problem& problem);
-  void label(const Blocks& blocks, const Problem& problem);
   void sort(const Blocks& blocks);
 
   std::vector<std::int32_t> labels_, joined_to_, label_of_root_;

@@ -118,7 +118,8 @@ void Iterations::extrapolate_bodies(double beta) {
     direction = {beta * direction.velocity + v, beta * direction.spin + w};
     start_[b] = {now[b].velocity, now[b].spin};
   };
-  sweep_.share(direction_.size(), [&](std::size_t first, std::size_t end) {
+  constexpr std::size_t few_bodies = 10000;
+  sweep_.share(direction_.size(), few_bodies, [&](std::size_t first, std::size_t end) {
     for (std::size_t b = first; b < end; ++b) extrapolate(b);
   });
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -92,7 +93,7 @@ void Solver::split_shared_bodies() {
   for (std::size_t g = 0; g < problem_.group_count; ++g)
     for (std::int64_t k = 0; k < problem_.groups[g].count(); ++k)
       for (std::uint32_t e = 0; e < problem_.groups[g].ends(); ++e)
-        if (const std::int32_t b = problem_.groups[g].end(k, e, problem_.bodies); b != problem_.bodies.wall())
+        if (const std::int32_t b = problem_.groups[g].end(k, e); b != problem_.bodies.wall())
           counts_[static_cast<std::size_t>(b)] = 1.0;
   ranks_.sum_bodies(counts_);
   problem_.bodies.split(counts_);
@@ -104,16 +105,26 @@ const char* Solver::make_blocks(ilaw_coupled_report& report) {
   for (std::size_t g = 0; g < problem_.group_count; ++g)
     colours_.assign(problem_.groups[g], static_cast<std::int32_t>(g), problem_.bodies, blocks_, order_);
   blocks_.allocate();
-  auto next = order_.begin();
+  std::atomic<bool> is_refused = false;
+  constexpr std::size_t few = 100;
+  sweep_.share(blocks_.list().size(), few, [&](std::size_t first, std::size_t end) {
+    for (std::size_t b = first; b < end; ++b)
+      if (!fill(blocks_.list()[b])) is_refused = true;
+  });
+  if (!is_refused) return nullptr;
   for (Block& block : blocks_.list()) {
-    for (std::size_t lane = 0; lane < block.count; ++lane)
-      if (!problem_.group(block).fill(block, lane, *next++, problem_.bodies)) {
-        report.bad_group = block.group;
-        return "delassus_form is transverse, and an arm is not along the normal";
-      }
-    sweep_.add_previous(block);
+    report.bad_group = block.group;
+    if (!fill(block)) break;
   }
-  return nullptr;
+  return "delassus_form is transverse, and an arm is not along the normal";
+}
+
+// False where an arm is not along the normal.
+bool Solver::fill(Block& block) {
+  for (std::size_t lane = 0; lane < block.count; ++lane)
+    if (!problem_.group(block).fill(block, lane, order_[block.order + lane], problem_.bodies)) return false;
+  sweep_.add_previous(block);
+  return true;
 }
 
 // Iterations add changes to the velocities, and with them rounding. At their end velocities are made anew
@@ -269,14 +280,7 @@ void Solver::find_worst_contact(ilaw_coupled_report& report) {
 }
 
 void Solver::explain(const Block& worst, std::size_t lane, ilaw_coupled_report& report) {
-  islands_.find(blocks_, problem_);
-  const auto block = static_cast<std::int32_t>(&worst - blocks_.list().data());
-  std::span<const Lane> island;
-  for (std::int32_t i = 0; i < islands_.count() && island.empty(); ++i)
-    for (const Lane& of : islands_.lanes(i))
-      if (of.block == block && of.lane == static_cast<std::int32_t>(lane)) island = islands_.lanes(i);
-  report.island_contacts = static_cast<std::int64_t>(island.size());
-  report.mass_ratio = mass_ratio_of(island);
+  describe_island(worst.order + lane, report);
   const bool is_solved = iterations_.is_solved();
   const double growth = is_solved ? rounded_growth : runaway_growth;
   if (report.speed > growth * report.mass_ratio * report.first_speed)
@@ -294,22 +298,26 @@ void Solver::explain(const Block& worst, std::size_t lane, ilaw_coupled_report& 
   report.message = message_.data();
 }
 
-// Heaviest to lightest of the bodies that can move.
-double Solver::mass_ratio_of(std::span<const Lane> contacts) const {
+// The contacts coupled with one of them, and the masses of their bodies that can move, heaviest to lightest.
+void Solver::describe_island(std::size_t contact, ilaw_coupled_report& report) {
+  islands_.label(blocks_, problem_);
+  const std::vector<std::int32_t>& labels = islands_.labels();
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
-  for (const Lane& contact : contacts) {
-    const Block& block = blocks_.list()[static_cast<std::size_t>(contact.block)];
-    for (int e = 0; e < block.layout->ends; ++e) {
-      const std::int32_t body = block.end(e, static_cast<std::size_t>(contact.lane));
-      if (!problem_.bodies.is_movable(body)) continue;
-      const Vector inverse = problem_.bodies.inertia_of(body).inverse_mass;
-      const double largest_inverse = std::max({inverse[0], inverse[1], inverse[2]});
-      if (!(largest_inverse > 0.0)) continue;
-      least = std::min(least, largest_inverse);
-      most = std::max(most, largest_inverse);
+  for (const Block& block : blocks_.list())
+    for (std::size_t q = 0; q < block.count; ++q) {
+      if (labels[block.order + q] != labels[contact]) continue;
+      ++report.island_contacts;
+      for (int e = 0; e < block.layout->ends; ++e) {
+        const std::int32_t body = block.end(e, q);
+        if (!problem_.bodies.is_movable(body)) continue;
+        const Vector inverse = problem_.bodies.inertia_of(body).inverse_mass;
+        const double largest_inverse = std::max({inverse[0], inverse[1], inverse[2]});
+        if (!(largest_inverse > 0.0)) continue;
+        least = std::min(least, largest_inverse);
+        most = std::max(most, largest_inverse);
+      }
     }
-  }
-  return most > 0.0 ? most / least : 1.0;
+  report.mass_ratio = most > 0.0 ? most / least : 1.0;
 }
 
 // The other law: of the contact at the same bodies with the largest impulse.

@@ -10,7 +10,6 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace ilaw::coupled {
@@ -25,6 +24,7 @@ class Solver {
   const char* open(const ilaw_bodies* bodies, const ilaw_contacts* const* groups, std::int64_t group_count,
                    ilaw_coupled_report& report);
   const char* make_blocks(ilaw_coupled_report& report);
+  bool fill(Block& block);
   void split_shared_bodies();
   std::int32_t iterate(double tolerance);
   // From the impulses. Returns the largest change of a velocity.
@@ -39,7 +39,7 @@ class Solver {
   // Describes the contacts that are coupled with the worst one.
   void explain(const Block& worst, std::size_t lane, ilaw_coupled_report& report);
   void find_incompatible_laws(const Block& worst, std::size_t lane, ilaw_coupled_report& report) const;
-  double mass_ratio_of(std::span<const Lane> contacts) const;
+  void describe_island(std::size_t contact, ilaw_coupled_report& report);
   std::int32_t evaluate_balance(ilaw_coupled_report& report);
   void write(ilaw_coupled_report& report);
 

@@ -67,10 +67,9 @@ class Sweep {
   double stable_step() const;
   void reset();
 
-  // Calls work(first, end) for parts of `count` bodies, on several threads if it is worth it.
+  // Calls work(first, end) for parts of `count` things, on several threads unless they are few.
   template <class Work>
-  void share(std::size_t count, const Work& work) {
-    constexpr std::size_t few = 10000;
+  void share(std::size_t count, std::size_t few, const Work& work) {
     if (count < few) return work(std::size_t{0}, count);
     team_.run([&](std::size_t t) { work(team_.part(count, t), team_.part(count, t + 1)); });
   }

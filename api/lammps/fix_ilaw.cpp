@@ -270,7 +270,7 @@ void FixIlaw::solve() {
 
 void FixIlaw::add_forces(double velocity_step) {
   const double to_force = 1.0 / (velocity_step * force->ftm2v);
-  for (FixIlaw* fix : all_) std::fill(fix->kept_.begin(), fix->kept_.end(), Kept{});
+  for (FixIlaw* fix : all_) std::fill_n(fix->kept_.begin(), atom->nlocal, Kept{});
   for (std::size_t i = 0; i < static_cast<std::size_t>(atom->nlocal); ++i)
     for (std::size_t c = 0; c < 3; ++c) {
       kept_[i][c] = to_force * total_[6 * i + c];
