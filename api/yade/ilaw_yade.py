@@ -13,7 +13,7 @@
 from __future__ import annotations
 
 import numpy as np
-from yade import NewtonIntegrator, O, Sphere, Wall
+from yade import InsertionSortCollider, NewtonIntegrator, O, Sphere, Wall
 
 import ilaw
 from ilaw.coupled import Bodies
@@ -21,6 +21,11 @@ from ilaw.coupled import Contacts as Group
 from ilaw.coupled import Solver
 
 FIXED = "xyzXYZ"
+
+
+def _numbers(vector):
+    """Of Yade's vectors, which take 15 times as long to iterate over: they end by an exception."""
+    return [vector[0], vector[1], vector[2]]
 
 
 class Contacts:
@@ -48,7 +53,7 @@ class Contacts:
         self.status = np.zeros(0, np.uint8)
         self.residual, self.sweeps, self.contact_count, self.overlap = 0.0, 0, 0, 0.0
         self.energy = np.zeros(4)
-        self._known = -1
+        self._known, self._collided = -1, None
 
     def _take(self, arrays):
         for name in self._widths:
@@ -68,8 +73,7 @@ class Contacts:
         """Adds the forces of the contacts; to be called last before NewtonIntegrator."""
         self._look_at_scene()
         h = O.dt
-        free, previous = self._velocities(h)
-        places = np.array([state.pos for state in self._states]).reshape(-1, 3)
+        places, free, previous = self._motion(h)
         geometry = self._geometry(places, previous["v"], h)
         bodies = Bodies(
             v_free=free["v"], spin_free=free["w"], v_previous=previous["v"], spin_previous=previous["w"],
@@ -97,6 +101,8 @@ class Contacts:
         self._newton = next((e for e in O.engines if isinstance(e, NewtonIntegrator)), None)
         if self._newton is None or self._newton.damping != 0:
             raise ValueError("ilaw: NewtonIntegrator(damping=0) expected, since damping would change the velocities")
+        self._collider = next((e for e in O.engines if isinstance(e, InsertionSortCollider)), None)
+        self._collided = None
         spheres = [b for b in O.bodies if isinstance(b.shape, Sphere)]
         self._walls = {b.id: b for b in O.bodies if isinstance(b.shape, Wall)}
         for b in O.bodies:
@@ -116,75 +122,105 @@ class Contacts:
         self._inverse_inertia = np.divide(1.0, inertia, where=moves, out=np.zeros(len(spheres)))
         self._known = len(O.bodies)
 
-    def _velocities(self, h):
-        """Half-step velocities with all forces but those of contact, and those before."""
-        rows = [
-            (*state.vel, *state.angVel, *O.forces.f(i), *O.forces.t(i))
-            for i, state in zip(self._ids.tolist(), self._states)
-        ]
-        v, w, force, torque = np.split(np.array(rows).reshape(-1, 12), 4, axis=1)
+    def _motion(self, h):
+        """Places, half-step velocities with all forces but those of contact, and those before."""
+        force_of, torque_of = O.forces.f, O.forces.t
+        numbers = []
+        for i, state in zip(self._ids.tolist(), self._states):
+            for a in (state.pos, state.vel, state.angVel, force_of(i), torque_of(i)):
+                numbers += a[0], a[1], a[2]  # as _numbers, without its call
+        places, v, w, force, torque = np.array(numbers).reshape(-1, 5, 3).transpose(1, 0, 2)
         acts = self._inverse_mass[:, None]
         free = v + h * acts * force + h * (acts > 0) * np.array(self._newton.gravity)
         turned = w + h * self._inverse_inertia[:, None] * torque
-        return {"v": free, "w": turned}, {"v": np.ascontiguousarray(v), "w": np.ascontiguousarray(w)}
+        return places, {"v": free, "w": turned}, {"v": np.ascontiguousarray(v), "w": np.ascontiguousarray(w)}
 
-    def _candidates(self):
-        """Pairs (body, counterpart) of ids that the collider has, sorted; one of them can move."""
-        found = []
-        for i in O.interactions.all(onlyReal=False):
-            first, second = (i.id1, i.id2) if i.id1 > i.id2 else (i.id2, i.id1)
-            if first in self._walls:
-                first, second = second, first
-            found.append((first, second))
-        pairs = np.array(sorted(found), np.int64).reshape(-1, 2)
+    def _look_at_collider(self):
+        """The candidates, whenever the collider has run: pairs (body, counterpart) of ids, sorted, of which one can
+        move, their rows and radii."""
+        key = self._collider and (self._collider.numAction, len(O.interactions))
+        if key and key == self._collided:
+            return
+        found = np.array([(i.id1, i.id2) for i in O.interactions.all(onlyReal=False)], np.int64).reshape(-1, 2)
+        is_counterpart = self._row[found] < 0  # a wall
+        turned = is_counterpart[:, 0] | ((found[:, 0] < found[:, 1]) & ~is_counterpart[:, 1])
+        found[turned] = found[turned, ::-1]
+        found = found[np.lexsort(found.T[::-1])]
         inverse = np.append(self._inverse_mass, 0.0)
-        return pairs[(inverse[self._row[pairs]] > 0).any(axis=1)]
+        self._pairs = found[(inverse[self._row[found]] > 0).any(axis=1)]
+        self._body, self._counterpart = self._row[self._pairs].astype(np.int32).T.copy()
+        other = np.where(self._counterpart < 0, self._body, self._counterpart)
+        self._radii = self._radius[np.column_stack([self._body, other])]
+        self._collided = key
 
     def _geometry(self, places, v, h):
-        pairs = self._candidates()
-        body, counterpart = self._row[pairs[:, 0]], self._row[pairs[:, 1]]
-        other, wall_velocity, wall_previous, wall_spin = np.zeros((4, len(pairs), 3))
-        radius = np.where(counterpart < 0, 0.0, self._radius[counterpart])
-        other[counterpart >= 0] = places[counterpart[counterpart >= 0]]
-        for number, wall in self._walls.items():
-            at = np.flatnonzero(pairs[:, 1] == number)
-            axis, place = wall.shape.axis, wall.state.pos[wall.shape.axis]
-            other[at], radius[at] = places[body[at]], self._radius[body[at]]
-            side = np.sign(wall.shape.sense) or np.where(other[at, axis] >= place, 1.0, -1.0)
-            # A point behind the wall, so that a centre which has sunk into it still finds its way out.
-            other[at, axis] = place - side * radius[at]
-            wall_spin[at] = self._spin(wall)
-            # In the middle of the step, where the mean of a turning wall's velocity is found to O(h^2).
-            from_axis, drift = places[body[at]] - np.array(wall.state.pos), v[body[at]] - np.array(wall.state.vel)
-            for velocity, ahead in ((wall_velocity, 0.5 * h), (wall_previous, -0.5 * h)):
-                velocity[at] = np.array(wall.state.vel) + np.cross(wall_spin[at], from_axis + ahead * drift)
+        spins = np.array([self._spin(wall) for wall in self._walls.values()])
+        self._look_at_collider()
+        body, counterpart, radius = self._body, self._counterpart, self._radii
+        at = counterpart < 0
+        other, (wall_velocity, wall_previous, wall_spin) = places[counterpart], np.zeros((3, len(body), 3))
+        if at.any():
+            other[at], wall_velocity[at], wall_previous[at], wall_spin[at] = self._at_walls(
+                self._pairs[at, 1], spins, places[body[at]], v[body[at]], radius[at, 0], h
+            )
         apart = places[body] - other
         length = np.linalg.norm(apart, axis=1)
         return {
-            "pairs": pairs,
-            "body": body.astype(np.int32),
-            "counterpart": counterpart.astype(np.int32),
             "normal": apart / length[:, None],
-            "gap": length - self._radius[body] - radius,
-            "radius": np.column_stack([self._radius[body], radius]),
+            "gap": length - radius[:, 0] - radius[:, 1],
             "wall_velocity": wall_velocity,
             "wall_previous": wall_previous,
             "wall_spin": wall_spin,
         }
 
+    def _at_walls(self, ids, spins, centre, v, radius, h):
+        """For spheres at walls: the centres of as large ones behind them, velocities after and before, spins."""
+        of = {number: k for k, number in enumerate(self._walls)}
+        which = np.array([of[i] for i in ids.tolist()])
+        walls = self._walls.values()
+        place, velocity = (
+            np.array([_numbers(getattr(w.state, name)) for w in walls])[which] for name in ("pos", "vel")
+        )
+        spin = spins[which]
+        axis, sense = (np.array([getattr(w.shape, name) for w in walls])[which] for name in ("axis", "sense"))
+        rows = np.arange(len(ids))
+        plane = place[rows, axis]
+        side = np.where(sense != 0, np.sign(sense), np.where(centre[rows, axis] >= plane, 1.0, -1.0))
+        # A point behind the wall, so that a centre which has sunk into it still finds its way out.
+        other = centre.copy()
+        other[rows, axis] = plane - side * radius
+        # In the middle of the step, where the mean of a turning wall's velocity is found to O(h^2).
+        from_axis, drift = centre - place, v - velocity
+        after, before = (velocity + np.cross(spin, from_axis + ahead * drift) for ahead in (0.5 * h, -0.5 * h))
+        return other, after, before, spin
+
     @staticmethod
     def _spin(wall):
-        spin = np.array(wall.state.angVel)
-        if np.delete(spin, wall.shape.axis).any():
-            found = f"angVel {tuple(spin.tolist())}"
+        spin = _numbers(wall.state.angVel)
+        if any(spin[:wall.shape.axis] + spin[wall.shape.axis + 1:]):
+            found = f"angVel {tuple(spin)}"
             raise NotImplementedError(f"ilaw: body {wall.id}: {found}, expected a spin about the wall's normal")
         return spin
 
     def _group(self, geometry):
         """The contacts with what is remembered of them; new ones get the law's first state."""
-        pairs, normal, radius = geometry["pairs"], geometry["normal"], geometry["radius"]
+        radius, normal = self._radii, geometry["normal"]
+        old, begin = self._remembered()
+        area = np.pi * radius.min(axis=1) ** 2 if self.area is None else self.area
+        group = Group(
+            self.law, body=self._body, counterpart=self._counterpart, area=area, arm=-radius[:, :1] * normal,
+            counterpart_arm=radius[:, 1:] * normal, **geometry, energy=True, **begin,
+        )  # fmt: skip
+        group.initialise(~old, time=O.time)
+        self.pairs = self._pairs
+        return group
+
+    def _remembered(self):
+        """Which of the candidates were there in the step before, and impulses and states of these."""
+        if self.pairs is self._pairs:
+            return np.ones(len(self.pairs), bool), {name: getattr(self, name).copy() for name in self._widths}
         span = len(O.bodies)
-        keys, known = pairs @ [span, 1], self.pairs @ [span, 1]
+        keys, known = self._pairs @ [span, 1], self.pairs @ [span, 1]
         where = np.searchsorted(known, keys)
         old = np.zeros(len(keys), bool)
         inside = where < len(known)
@@ -192,18 +228,13 @@ class Contacts:
         begin = {name: np.zeros((len(keys), width)) for name, width in self._widths.items()}
         for name, array in begin.items():
             array[old] = getattr(self, name)[where[old]]
-        area = np.pi * radius.min(axis=1) ** 2 if self.area is None else self.area
-        group = Group(
-            self.law, body=geometry["body"], counterpart=geometry["counterpart"], normal=normal, gap=geometry["gap"],
-            area=area, arm=-radius[:, :1] * normal, counterpart_arm=radius[:, 1:] * normal,
-            **{name: geometry[name] for name in ("wall_velocity", "wall_previous", "wall_spin")}, energy=True, **begin,
-        )  # fmt: skip
-        group.initialise(~old, time=O.time)
-        self.pairs = pairs
-        return group
+        return old, begin
 
     def _add_forces(self, bodies, h):
         pushed = bodies.impulse.any(axis=1) | bodies.angular_impulse.any(axis=1)
-        for k in np.flatnonzero(pushed & (self._inverse_mass > 0)):
-            O.forces.addF(int(self._ids[k]), tuple(bodies.impulse[k] / h))
-            O.forces.addT(int(self._ids[k]), tuple(bodies.angular_impulse[k] / h))
+        pushed &= self._inverse_mass > 0
+        force, torque = (array[pushed] / h for array in (bodies.impulse, bodies.angular_impulse))
+        add_force, add_torque = O.forces.addF, O.forces.addT
+        for i, f, t in zip(self._ids[pushed].tolist(), force.tolist(), torque.tolist()):
+            add_force(i, f)
+            add_torque(i, t)

@@ -44,10 +44,12 @@ def bounce(e, dt):
 
 
 def collision(e):
-    """Two unequal spheres, head on, one in flight and one at rest."""
-    spheres = [((0, 0, 0), 0.5, (0, 0, 0)), ((0.95, 0, 0), 0.4, (-1, 0, 0))]
+    """Two unequal spheres, head on, one in flight and one at rest; the collider has no pair of them at first."""
+    spheres = [((0, 0, 0), 0.5, (0, 0, 0)), ((1.6, 0, 0), 0.4, (-1, 0, 0))]
     scene("contact", spheres, dt=7e-4, restitution=e)
-    O.run(120, True)
+    O.step()
+    assert len(contacts.pairs) == 0
+    O.run(1100, True)
     return {"v": [velocity(0)[0], velocity(1)[0]], "m": [O.bodies[i].state.mass for i in (0, 1)]}
 
 
