@@ -94,15 +94,15 @@ V slip_speed_of(const friction_problem<V>& p, const friction_answer<V>& a) {
   return zero_unless(a.status == status::slip.code, length(u1, u2));
 }
 
-// By the solver of Coulomb's law for a given coefficient, solve(problem, answer).
+// By the solver of Coulomb's law for a given coefficient, solve(problem, answer, lanes that need the answer).
 template <class V, class Mu, class Solve>
 void solve_changing_friction_by(const friction_problem<V>& p, const Mu& mu_at, changing_answer<V>& a,
                                 Solve solve) {
   friction_problem<V> tried = p;
   for (V& rest : tried.rest) rest = 0.0;  // positive work is taken off the solution alone
-  const auto speed_with = [&](V mu) {
+  const auto speed_with = [&](V mu, mask_of<V> needed) {
     tried.contact.mu[0] = tried.contact.mu[1] = mu;
-    solve(tried, a.friction);
+    solve(tried, a.friction, needed);
     return slip_speed_of(tried, a.friction);
   };
   const V *h = p.contact.h, *q = p.contact.q;
@@ -111,53 +111,67 @@ void solve_changing_friction_by(const friction_problem<V>& p, const Mu& mu_at, c
   tried.contact.mu[0] = tried.contact.mu[1] = 0.0;
   const mask_of<V> closed = has_closed_form(tried.contact);
   mask_of<V> slips = !closed;
-  if constexpr (!chooses_speed<Mu, V>) slips = slips & (speed_with(mu_at(V(0.0)).value) > 0.0);
-  // The speed falls almost linearly with the coefficient: secants of that line, on which mu is exact.
+  if constexpr (!chooses_speed<Mu, V>) {
+    const V least = mu_at(V(0.0)).value;  // often none at all, which the solver does not take
+    const mask_of<V> resists = slips & (least > 0.0);
+    slips = slips & (length(q[1] + h[3] * normal, q[2] + h[4] * normal) > 0.0);
+    if (any(resists)) slips = slips & ((least <= 0.0) | (speed_with(least, resists) > 0.0));
+  }
+  const full<V> inertia{h[0], h[1], h[2], h[3], h[4], h[5]};
+  const vector<V> whole{q[0], q[1], q[2]};
+  const vector<V> holding = inertia.solve(whole);  // as an impulse in the other direction it stops the node
+  const V most_mu = select(holding.n < 0.0, holding.tangential_length() / -holding.n, infinity);
+  // The speed falls almost linearly with the coefficient, to 0 at that which holds the node: secants of that
+  // line, on which mu is exact.
   V drag = select(closed, h[1], 0.5 * (h[1] + h[2])) * normal;
   const V uncoupled = slip_speed(most, drag, mu_at);
   V v = uncoupled;
-  V mu = mu_at(v).value, speed = speed_with(mu);
+  V mu = mu_at(v).value, speed = speed_with(mu, slips);
   for (int k = 0; k < 12 && any(slips & (absolute(v - speed) > rounding)); ++k) {
     const mask_of<V> goes_on = slips & (absolute(v - speed) > rounding);
+    mu = select(speed > 0.0, mu, smaller(mu, most_mu));
     const V next = slip_speed(speed + drag * mu, drag, mu_at), next_mu = mu_at(next).value;
-    const V next_speed = speed_with(next_mu), slope = (speed - next_speed) / (next_mu - mu);
+    const V next_speed = speed_with(next_mu, goes_on);
+    const V slope =
+        (speed - next_speed) / (select(next_speed > 0.0, next_mu, smaller(next_mu, most_mu)) - mu);
     drag = select(goes_on & (slope > 0.0) & (slope < infinity), slope, drag);
     v = select(goes_on, next, v);
     mu = select(goes_on, next_mu, mu);
     speed = select(goes_on, next_speed, speed);
   }
-  const auto trial = [&](V at) {
-    const coefficient<V> c = mu_at(at);
-    const V residual = at - speed_with(c.value);
-    return root_trial<V>{zero_unless(absolute(residual) > rounding, residual), 1.0, 1.0 + drag * c.slope, 1.0,
-                         !slips};
-  };
-  // |u|^2 <= |H| q.(H^-1 q), as no impulse does positive work on u.
-  const full<V> inertia{h[0], h[1], h[2], h[3], h[4], h[5]};
-  const vector<V> whole{q[0], q[1], q[2]};
-  const vector<V> solved = inertia.solve(whole);
-  const V energy = normal_product(whole, solved) + tangential_product(whole, solved);
-  const V high = 2.0 * square_root((h[0] + (h[1] + h[2])) * energy);
   const mask_of<V> unsolved = slips & (absolute(v - speed) > rounding);
-  const V coupled = root_between(0x1p-200 * high, high, select(v > 0.0, v, most), unsolved, trial);
-  a.speed = select(closed, uncoupled, zero_unless(slips, select(unsolved, coupled, v)));
+  if (any(unsolved)) {
+    const auto trial = [&](V at) {
+      const coefficient<V> c = mu_at(at);
+      const V residual = at - speed_with(c.value, unsolved);
+      return root_trial<V>{zero_unless(absolute(residual) > rounding, residual), 1.0, 1.0 + drag * c.slope,
+                           1.0, !slips};
+    };
+    // |u|^2 <= |H| q.(H^-1 q), as no impulse does positive work on u.
+    const V energy = normal_product(whole, holding) + tangential_product(whole, holding);
+    const V high = 2.0 * square_root((h[0] + (h[1] + h[2])) * energy);
+    const V coupled = root_between(0x1p-200 * high, high, select(v > 0.0, v, most), unsolved, trial);
+    v = select(unsolved, coupled, v);
+  }
+  a.speed = select(closed, uncoupled, zero_unless(slips, v));
   tried = p;
   tried.contact.mu[0] = tried.contact.mu[1] = mu_at(a.speed).value;
-  solve(tried, a.friction);
+  solve(tried, a.friction, h[0] > 0.0);
 }
 template <class V, class Mu>
 mask_of<V> solve_changing_friction(const friction_problem<V>& p, const Mu& mu, changing_answer<V>& a) {
   mask_of<V> left = p.contact.h[0] < 0.0;
-  solve_changing_friction_by(p, mu, a, [&](const friction_problem<V>& tried, friction_answer<V>& found) {
-    left = left | solve_friction(tried, found);
-  });
+  solve_changing_friction_by(
+      p, mu, a, [&](const friction_problem<V>& tried, friction_answer<V>& found, mask_of<V> needed) {
+        left = left | (solve_friction(tried, found) & needed);
+      });
   return left;
 }
 template <class Mu>
 void solve_changing_friction_exactly(const friction_problem<double>& p, const Mu& mu,
                                      changing_answer<double>& a) {
   solve_changing_friction_by(p, mu, a,
-                             [](const friction_problem<double>& tried, friction_answer<double>& found) {
+                             [](const friction_problem<double>& tried, friction_answer<double>& found, bool) {
                                if (solve_friction(tried, found)) solve_friction_exactly(tried, found);
                              });
 }
