@@ -14,6 +14,8 @@ namespace ilaw::coupled {
 
 class Colours {
  public:
+  // For the first group.
+  void begin() { next_colour_ = 0; }
   // Adds the blocks of a group, and to `order` its contacts in the order of their lanes. Contacts are colored
   // in the order of their bodies' global numbers, whatever their order in the arrays.
   void assign(const Contacts& contacts, std::int32_t group, const Bodies& bodies, Blocks& blocks,

@@ -102,6 +102,7 @@ void Solver::split_shared_bodies() {
 const char* Solver::make_blocks(ilaw_coupled_report& report) {
   blocks_.clear();
   order_.clear();
+  colours_.begin();
   for (std::size_t g = 0; g < problem_.group_count; ++g)
     colours_.assign(problem_.groups[g], static_cast<std::int32_t>(g), problem_.bodies, blocks_, order_);
   blocks_.allocate();

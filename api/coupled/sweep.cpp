@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <new>
 
 // Compiled for AVX2 as well; the loader chooses. Without contraction the bits are the same.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
@@ -62,19 +63,19 @@ bool has_not_acted(const Block& block, std::size_t lane) {
 
 void Sweep::use(std::size_t threads) {
   threads_ = threads;
-  seats_.resize(threads);
+  data_.resize(threads);
   if (team_.size() > threads) team_.resize(threads);
 }
 
 void Sweep::reset() {
   report_ = {};
   failed_group_ = -1;
-  for (Seat& seat : seats_) seat.stable_step = std::numeric_limits<double>::infinity();
+  for (ThreadData& own : data_) own.stable_step = std::numeric_limits<double>::infinity();
 }
 
 double Sweep::stable_step() const {
   double least = std::numeric_limits<double>::infinity();
-  for (const Seat& seat : seats_) least = std::min(least, seat.stable_step);
+  for (const ThreadData& own : data_) least = std::min(least, own.stable_step);
   return least;
 }
 
@@ -124,40 +125,70 @@ void Sweep::gather(const Block& block, const Body* bodies, double* velocity) con
     for (std::size_t q = block.count; q < padded(block.count); ++q) velocity[c * max_stride + q] = 0.0;
 }
 
+namespace {
+
+std::size_t end_of_color(const std::vector<Block>& blocks, std::size_t first) {
+  std::size_t end = first + 1;
+  while (end < blocks.size() && blocks[end].colour == blocks[first].colour) ++end;
+  return end;
+}
+
+}  // namespace
+
+template <class Work>
+bool Sweep::is_served(Block& block, ThreadData& own, const Work& work) const {
+  try {
+    return work(block, own);
+  } catch (const std::bad_alloc&) {
+    own.change.code = ILAW_OUT_OF_MEMORY;
+    own.report.reason = "out of memory";
+    return false;
+  }
+}
+
 template <class Work>
 Change Sweep::for_blocks(Blocks& blocks, const Work& work) {
   std::vector<Block>& list = blocks.list();
   prefetches_ = blocks.bytes() > cached_bytes;
-  std::atomic<bool> failed{false};
-  for (Seat& seat : seats_) {
-    seat.change = {};
-    seat.failed = nullptr;
+  for (ThreadData& own : data_) {
+    own.change = {};
+    own.failed = nullptr;
   }
-  const auto serve = [&](std::size_t first, std::size_t end, Seat& seat) {
-    for (std::size_t i = first; i < end && !failed.load(std::memory_order_relaxed); ++i) {
-      if (work(list[i], seat)) continue;
-      seat.failed = &list[i];
-      failed = true;
+  // Of a color that fails all blocks are tried, and none of a later one, so that the first that failed is
+  // told.
+  std::atomic<std::size_t> failed_at{list.size()};
+  const auto serve = [&](std::size_t color, std::size_t first, std::size_t end, ThreadData& own) {
+    for (std::size_t i = first; i < end && failed_at.load(std::memory_order_relaxed) >= color; ++i) {
+      if (is_served(list[i], own, work)) continue;
+      own.failed = &list[i];
+      failed_at = color;
+      return;
     }
   };
-  if (threads_ == 1 || !prefetches_) {  // to meet would take longer than a part of the work
-    serve(0, list.size(), seats_[0]);
+  if (threads_ == 1 || !prefetches_) {  // barriers would cost more than they save
+    serve(0, 0, list.size(), data_[0]);
   } else {
     team_.resize(threads_);
     team_.run([&](std::size_t t) {
       for (std::size_t first = 0, end = 0; first < list.size(); first = end) {
-        while (end < list.size() && list[end].colour == list[first].colour) ++end;
-        serve(first + team_.part(end - first, t), first + team_.part(end - first, t + 1), seats_[t]);
-        team_.meet();
+        end = end_of_color(list, first);
+        const bool is_single = end - first == 1;
+        while (is_single && end < list.size() && end_of_color(list, end) - end == 1) ++end;
+        const std::size_t share = end - first;
+        if (!is_single)
+          serve(first, first + team_.part(share, t), first + team_.part(share, t + 1), data_[t]);
+        else if (t == 0)
+          serve(first, first, end, data_[0]);
+        if (end < list.size()) team_.barrier();
       }
     });
   }
   Change change;
-  const Seat* first_failed = nullptr;
-  for (const Seat& seat : seats_) {
-    change.largest = std::max(change.largest, seat.change.largest);
-    change.size = std::max(change.size, seat.change.size);
-    if (seat.failed && (!first_failed || seat.failed < first_failed->failed)) first_failed = &seat;
+  const ThreadData* first_failed = nullptr;
+  for (const ThreadData& own : data_) {
+    change.largest = std::max(change.largest, own.change.largest);
+    change.size = std::max(change.size, own.change.size);
+    if (own.failed && (!first_failed || own.failed < first_failed->failed)) first_failed = &own;
   }
   for (const Block& block : list)
     if (!block.asleep) change.square += block.square;
@@ -170,19 +201,19 @@ Change Sweep::for_blocks(Blocks& blocks, const Work& work) {
 }
 
 Change Sweep::run(Blocks& blocks, const Conjugate& conjugate) {
-  return for_blocks(blocks, [&](Block& block, Seat& seat) {
+  return for_blocks(blocks, [&](Block& block, ThreadData& own) {
     if (block.asleep) return true;
     if (conjugate.active) extrapolate(block, conjugate.beta);
-    if (!evaluate(block, seat)) return false;
-    scatter(block, seat);
+    if (!evaluate(block, own)) return false;
+    scatter(block, own);
     return true;
   });
 }
 
 Change Sweep::run_all(Blocks& blocks) {
-  return for_blocks(blocks, [&](Block& block, Seat& seat) {
-    if (!evaluate(block, seat)) return false;
-    scatter(block, seat);
+  return for_blocks(blocks, [&](Block& block, ThreadData& own) {
+    if (!evaluate(block, own)) return false;
+    scatter(block, own);
     for (std::size_t q = 0; q < block.count && block.asleep; ++q) block.asleep = has_not_acted(block, q);
     return true;
   });
@@ -201,17 +232,17 @@ ILAW_COUPLED_VERSIONS void Sweep::extrapolate(Block& block, double beta) const {
 }
 
 // v_free = u - H r. Returns the largest velocity in it.
-ILAW_COUPLED_VERSIONS double Sweep::prepare(Block& block, Seat& seat) const {
+ILAW_COUPLED_VERSIONS double Sweep::prepare(Block& block, ThreadData& own) const {
   const Layout& layout = *block.layout;
-  gather(block, seat.v_free.data());
+  gather(block, own.v_free.data());
   const double* r = block.column(layout.impulse);
   double* asked = block.column(layout.asked);
   Lanes most{};
   with_form(block, [&](const auto& form) {
     for (std::size_t q = 0; q < padded(block.count); q += lane_count) {
       const auto made = form(q, read(form, r + q, block.stride));
-      const auto v = read(form, seat.v_free.data() + q, max_stride) - made;
-      put(v, seat.v_free.data() + q, max_stride);
+      const auto v = read(form, own.v_free.data() + q, max_stride) - made;
+      put(v, own.v_free.data() + q, max_stride);
       put(v, asked + q, block.stride);
       most = larger(larger(size(form, q, v), size(form, q, made)), most);
     }
@@ -219,20 +250,16 @@ ILAW_COUPLED_VERSIONS double Sweep::prepare(Block& block, Seat& seat) const {
   return largest(most);
 }
 
-bool Sweep::evaluate(Block& block, Seat& seat) const {
+bool Sweep::evaluate(Block& block, ThreadData& own) const {
   const Layout& layout = *block.layout;
-  const double size = prepare(block, seat);
-  Change& change = seat.change;
+  const double size = prepare(block, own);
+  Change& change = own.change;
   change.size = size > change.size ? size : change.size;
-  const Contacts::Call call{seat.v_free.data(),
-                            block.column(layout.delassus),
-                            block.stride,
-                            seat.answer.data(),
-                            nullptr,
-                            block.status,
-                            nullptr,
-                            nullptr};
-  ilaw_report& report = seat.report;
+  const Contacts::Call call{own.v_free.data(), block.column(layout.delassus),
+                            block.stride,      own.answer.data(),
+                            nullptr,           block.status,
+                            nullptr,           nullptr};
+  ilaw_report& report = own.report;
   const std::int32_t code = problem_.group(block).evaluate(block, call, report);
   block.bad_count = code == ILAW_BAD_NODES ? report.bad_count : 0;
   block.first_bad = report.first_bad_node;
@@ -240,23 +267,23 @@ bool Sweep::evaluate(Block& block, Seat& seat) const {
   // NaN, or below 0, would pass for no limit at all.
   const bool has_step = report.stable_velocity_step >= 0.0;
   if (report.stable_velocity_step > 0.0)
-    seat.stable_step = std::min(seat.stable_step, report.stable_velocity_step);
+    own.stable_step = std::min(own.stable_step, report.stable_velocity_step);
   if (code >= 0 && has_step) return true;
   change.code = code < 0 ? code : ILAW_BAD_LIBRARY;
   if (code >= 0) report.reason = "a law reported a stable step that is below 0 or not a number";
   return false;
 }
 
-ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Seat& seat) const {
+ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, ThreadData& own) const {
   const Layout& layout = *block.layout;
   const std::size_t n = padded(block.count), s = block.stride;
   double *r = block.column(layout.impulse), *dr = block.column(layout.change);
   for (std::size_t c = 0; c < static_cast<std::size_t>(layout.width); ++c)
-    for (std::size_t q = block.count; q < n; ++q) seat.answer[c * max_stride + q] = 0.0;
+    for (std::size_t q = block.count; q < n; ++q) own.answer[c * max_stride + q] = 0.0;
   Lanes most{}, square{};
   with_form(block, [&](const auto& form) {
     for (std::size_t q = 0; q < n; q += lane_count) {
-      const auto answer = read(form, seat.answer.data() + q, max_stride), by = answer - read(form, r + q, s);
+      const auto answer = read(form, own.answer.data() + q, max_stride), by = answer - read(form, r + q, s);
       put(answer, r + q, s);
       put(by, dr + q, s);
       const auto made = form(q, by);
@@ -264,7 +291,7 @@ ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Seat& seat) const {
       square += dot(by, made);
     }
   });
-  seat.change.largest = std::max(seat.change.largest, largest(most));
+  own.change.largest = std::max(own.change.largest, largest(most));
   block.square = sum(square);
   const Contacts& group = problem_.group(block);
   with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
@@ -280,7 +307,7 @@ ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Seat& seat) const {
 
 bool Sweep::wake(Blocks& blocks) {
   bool woken = false;
-  Columns& v_free = seats_[0].v_free;
+  Columns& v_free = data_[0].v_free;
   for (Block& block : blocks.list()) {
     if (!block.asleep) continue;
     gather(block, v_free.data());

@@ -37,7 +37,7 @@ struct Change {
 class Sweep {
  public:
   explicit Sweep(Problem& problem) : problem_(problem) { use(1); }
-  // Blocks of a color are evaluated by so many threads, with the bits of one.
+  // Blocks of a color are evaluated by this many threads, with the bits of one.
   void use(std::size_t threads);
 
   // Extrapolation of the impulses before the iteration: r += beta d, d = beta d + (last change of r).
@@ -75,8 +75,8 @@ class Sweep {
   }
 
  private:
-  // Scratch and findings of a thread.
-  struct alignas(64) Seat {
+  // Scratch and results of a thread.
+  struct alignas(64) ThreadData {
     alignas(64) Columns v_free{};
     alignas(64) Columns answer{};
     ilaw_report report{};
@@ -84,16 +84,18 @@ class Sweep {
     double stable_step = 0.0;
     const Block* failed = nullptr;
   };
-  // Calls work(block, seat) for all blocks, those of a color on all threads, until it returns false.
+  // Calls work(block, own) for all blocks, those of a color on all threads, until it returns false.
   template <class Work>
   Change for_blocks(Blocks& blocks, const Work& work);
+  template <class Work>
+  bool is_served(Block& block, ThreadData& own, const Work& work) const;
   void gather(const Block& block, const Body* bodies, double* velocity) const;
   void extrapolate(Block& block, double beta) const;
-  double prepare(Block& block, Seat& seat) const;
-  bool evaluate(Block& block, Seat& seat) const;
-  void scatter(Block& block, Seat& seat) const;
+  double prepare(Block& block, ThreadData& own) const;
+  bool evaluate(Block& block, ThreadData& own) const;
+  void scatter(Block& block, ThreadData& own) const;
 
-  std::vector<Seat> seats_;
+  std::vector<ThreadData> data_;
   Team team_;  // of threads_ from the first iteration on that is worth it
   std::size_t threads_ = 1;
   ilaw_report report_{};

@@ -2,22 +2,35 @@
 #include "team.hpp"
 
 #include <system_error>
+#include <utility>
+
+#include <unistd.h>
 
 namespace ilaw::coupled {
 
 void Team::resize(std::size_t size) {
-  if (size == this->size()) return;
+  leave_parent();
+  if (size == asked_) return;
+  asked_ = size;
   call_ = nullptr;
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
   for (std::thread& thread : others_) thread.join();
   others_.clear();
-  if (size < 2) return;
+  process_ = getpid();
   const std::uint32_t round = round_.load();
   try {
     for (std::size_t k = 1; k < size; ++k) others_.emplace_back([this, k, round] { serve(k, round); });
-  } catch (const std::system_error&) {  // as many as the system gives
+  } catch (const std::system_error&) {  // fewer threads than asked
   }
+}
+
+// Threads of the parent are not in this process: they are neither joined nor destroyed.
+void Team::leave_parent() {
+  if (others_.empty() || process_ == getpid()) return;
+  static_cast<void>(new std::vector<std::thread>(std::exchange(others_, {})));
+  arrived_ = 0;
+  asked_ = 1;
 }
 
 void Team::serve(std::size_t thread, std::uint32_t seen) {
@@ -29,7 +42,7 @@ void Team::serve(std::size_t thread, std::uint32_t seen) {
     seen = round_.load(std::memory_order_acquire);
     if (!call_) return;
     call_(work_, thread);
-    meet();
+    barrier();
   }
 }
 

@@ -8,6 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include <sys/types.h>
+
 namespace ilaw::coupled {
 
 class Team {
@@ -17,49 +19,55 @@ class Team {
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
-  // Threads, that of the caller among them; fewer where the system gives no more.
+  // Number of threads, that of the caller among them. There are fewer where the system gives no more, and in
+  // a child of fork, which does not have its parent's.
   void resize(std::size_t size);
   std::size_t size() const { return others_.size() + 1; }
 
-  // Calls work(thread) on all threads, 0 being the caller's, and returns when all are done.
+  // Calls work(thread), which throws nothing, on all threads, 0 being the caller's, and returns when all are
+  // done.
   template <class Work>
   void run(const Work& work) {
+    leave_parent();
     if (others_.empty()) return work(std::size_t{0});
     work_ = &work;
     call_ = [](const void* of, std::size_t thread) { (*static_cast<const Work*>(of))(thread); };
     round_.fetch_add(1, std::memory_order_release);
     round_.notify_all();
     work(std::size_t{0});
-    meet();
+    barrier();
   }
-  // Within work, on all threads: none goes on before the last has come.
-  void meet() {
+  // Within work: returns when all threads have called it.
+  void barrier() {
     if (others_.empty()) return;
-    const std::uint32_t meeting = meeting_.load(std::memory_order_relaxed);
+    const std::uint32_t passed = passed_.load(std::memory_order_relaxed);
     if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == size()) {
       arrived_.store(0, std::memory_order_relaxed);
-      meeting_.store(meeting + 1, std::memory_order_release);
+      passed_.store(passed + 1, std::memory_order_release);
       return;
     }
-    wait_until(meeting_, meeting);
+    wait_while(passed_, passed);
   }
   // The part of `count` things that a thread works on: from part(count, t) to part(count, t + 1).
   std::size_t part(std::size_t count, std::size_t thread) const { return count * thread / size(); }
 
  private:
   void serve(std::size_t thread, std::uint32_t seen);
-  // Until it is another number. In turns with other threads where it takes long, as on a busy processor.
-  static void wait_until(const std::atomic<std::uint32_t>& number, std::uint32_t old) {
-    constexpr int tries = 4000;  // some microseconds
-    for (int k = 0; number.load(std::memory_order_acquire) == old; ++k)
+  void leave_parent();
+  // Yields after some microseconds, for the threads of a busy processor.
+  static void wait_while(const std::atomic<std::uint32_t>& number, std::uint32_t value) {
+    constexpr int tries = 4000;
+    for (int k = 0; number.load(std::memory_order_acquire) == value; ++k)
       if (k > tries) std::this_thread::yield();
   }
 
-  alignas(64) std::atomic<std::uint32_t> meeting_{0};
+  alignas(64) std::atomic<std::uint32_t> passed_{0};  // barriers
   std::atomic<std::uint32_t> round_{0};
   const void* work_ = nullptr;
   void (*call_)(const void*, std::size_t) = nullptr;  // null: the threads end
   std::vector<std::thread> others_;
+  std::size_t asked_ = 1;
+  pid_t process_ = 0;
   alignas(64) std::atomic<std::size_t> arrived_{0};  // all write it: apart from what they wait for
 };
 

@@ -24,7 +24,7 @@ FIXED = "xyzXYZ"
 
 
 def _numbers(vector):
-    """Of Yade's vectors, which take 15 times as long to iterate over: they end by an exception."""
+    """Iterating over a vector of Yade is 15 times slower, because an exception ends it."""
     return [vector[0], vector[1], vector[2]]
 
 
@@ -53,7 +53,7 @@ class Contacts:
         self.status = np.zeros(0, np.uint8)
         self.residual, self.sweeps, self.contact_count, self.overlap = 0.0, 0, 0, 0.0
         self.energy = np.zeros(4)
-        self._known, self._collided = -1, None
+        self._bodies, self._engines, self._collided = None, None, None
 
     def _take(self, arrays):
         for name in self._widths:
@@ -86,15 +86,16 @@ class Contacts:
         )
         self._add_forces(bodies, h)
         self._take(vars(group))
-        self.status = group.status
+        self.pairs, self.status = self._pairs, group.status
         self.residual, self.sweeps = report.residual, report.sweeps
         self.energy += report.energy
         self.contact_count = int(np.count_nonzero(group.status))
         self.overlap = float(np.max(-geometry["gap"], initial=0.0))
 
     def _look_at_scene(self):
-        """Masses and radii, once and whenever the number of bodies changes."""
-        if self._known == len(O.bodies):
+        """Masses and radii, once and whenever bodies or engines are others."""
+        bodies, engines = list(O.bodies), O.engines
+        if bodies == self._bodies and engines == self._engines:
             return
         if O.periodic:
             raise NotImplementedError("ilaw: a periodic cell is not served")
@@ -103,9 +104,9 @@ class Contacts:
             raise ValueError("ilaw: NewtonIntegrator(damping=0) expected, since damping would change the velocities")
         self._collider = next((e for e in O.engines if isinstance(e, InsertionSortCollider)), None)
         self._collided = None
-        spheres = [b for b in O.bodies if isinstance(b.shape, Sphere)]
-        self._walls = {b.id: b for b in O.bodies if isinstance(b.shape, Wall)}
-        for b in O.bodies:
+        spheres = [b for b in bodies if isinstance(b.shape, Sphere)]
+        self._walls = {b.id: b for b in bodies if isinstance(b.shape, Wall)}
+        for b in bodies:
             if b.isClump or b.isClumpMember or not isinstance(b.shape, (Sphere, Wall)):
                 raise NotImplementedError(f"ilaw: body {b.id}: single spheres and walls are served alone")
         for b in spheres:
@@ -113,14 +114,15 @@ class Contacts:
                 found = f"blockedDOFs {b.state.blockedDOFs!r}"
                 raise NotImplementedError(f"ilaw: body {b.id}: {found}, all or none expected")
         self._ids, self._states = np.array([b.id for b in spheres], np.int64), [b.state for b in spheres]
-        self._row = np.full(len(O.bodies), -1)
+        self._row, self._is_known = np.full(len(O.bodies), -1), np.zeros(len(O.bodies), bool)
+        self._is_known[[b.id for b in bodies]] = True
         self._row[self._ids] = np.arange(len(spheres))
         self._radius = np.array([b.shape.radius for b in spheres])
         moves = np.array([b.state.blockedDOFs == "" for b in spheres], bool)
-        mass, inertia = (np.array(values) for values in zip(*((b.state.mass, b.state.inertia[0]) for b in spheres)))
+        mass, inertia = np.array([(b.state.mass, b.state.inertia[0]) for b in spheres]).reshape(-1, 2).T
         self._inverse_mass = np.divide(1.0, mass, where=moves, out=np.zeros(len(spheres)))
         self._inverse_inertia = np.divide(1.0, inertia, where=moves, out=np.zeros(len(spheres)))
-        self._known = len(O.bodies)
+        self._bodies, self._engines = bodies, engines
 
     def _motion(self, h):
         """Places, half-step velocities with all forces but those of contact, and those before."""
@@ -142,6 +144,7 @@ class Contacts:
         if key and key == self._collided:
             return
         found = np.array([(i.id1, i.id2) for i in O.interactions.all(onlyReal=False)], np.int64).reshape(-1, 2)
+        found = found[self._is_known[found].all(axis=1)]  # the collider removes those of erased bodies later
         is_counterpart = self._row[found] < 0  # a wall
         turned = is_counterpart[:, 0] | ((found[:, 0] < found[:, 1]) & ~is_counterpart[:, 1])
         found[turned] = found[turned, ::-1]
@@ -212,7 +215,6 @@ class Contacts:
             counterpart_arm=radius[:, 1:] * normal, **geometry, energy=True, **begin,
         )  # fmt: skip
         group.initialise(~old, time=O.time)
-        self.pairs = self._pairs
         return group
 
     def _remembered(self):

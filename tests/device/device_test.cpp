@@ -11,7 +11,7 @@
 namespace ilaw::testing {
 namespace {
 
-// And parameters per node, in time and along two axes.
+// Those of all laws, and coefficients of friction per node, in time and along two axes.
 std::vector<LawCase> cases_to_compare() {
   std::vector<LawCase> cases = served_cases();
   const auto add = [&](const char* name, const Parameters& parameters) {

@@ -120,8 +120,9 @@ typedef struct ilaw_coupled_options {
                                     over the step; 0: none. A residual below it that iterations no longer lower
                                     counts as solved: redundant contacts, whose gaps differ by rounding, have
                                     no better solution */
-  uint32_t threads;              /* that evaluate contacts, at most 256, where some thousands are coupled; the
-                                    same bits for any number. 0, 1: the caller's. Others sleep between calls */
+  uint32_t threads;              /* number of threads, at most 256, where some 6000 contacts and more are
+                                    coupled; the same bits for any number. 0, 1: the caller's alone. The
+                                    others belong to the solver, and sleep between its calls */
   uint32_t reserved;             /* 0 */
 } ilaw_coupled_options;
 

@@ -123,7 +123,7 @@ void CoupledStep::solve_groups(const StepView& step, double speed, const double*
   options.tolerance = tolerance;
   options.speed = speed;
   options.rounding = rounding_of_gaps(step);
-  options.threads = static_cast<std::uint32_t>(omp_get_max_threads());
+  options.threads = omp_in_parallel() ? 1 : static_cast<std::uint32_t>(omp_get_max_threads());
   try {
     report_ = solver_.solve(bodies, given_, options);
   } catch (const ilaw::error&) {

@@ -53,6 +53,18 @@ def collision(e):
     return {"v": [velocity(0)[0], velocity(1)[0]], "m": [O.bodies[i].state.mass for i in (0, 1)]}
 
 
+def changed():
+    """A collider that takes the place of another while two spheres come near, and an erased sphere in the way."""
+    spheres = [((0, 0, 0), 0.5, (0, 0, 0)), ((2, 0, 0), 0.4, (-1, 0, 0)), ((1.48, 0, 0), 0.1, (0, 0, 0))]
+    scene("contact", spheres, dt=1e-3, restitution=0.0)
+    O.run(2, True)
+    O.bodies.erase(2)
+    collider = InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=1.3), Bo1_Wall_Aabb()])
+    O.engines = [O.engines[0], collider, *O.engines[2:]]
+    O.run(1500, True)
+    return {"v": [velocity(0)[0], velocity(1)[0]], "m": [O.bodies[i].state.mass for i in (0, 1)]}
+
+
 def roll(dt):
     """Slides on a wall with velocity 2, friction 0.1, gravity 10: rolls from 2 u/(7 mu g) on, with 5/7 of it."""
     scene("coulomb", [((0, 0, 0.5), 0.5, (2, 0, 0))], [(2, 1)], (0, 0, -10), dt, friction=0.1, tolerance=1e-10)
@@ -223,6 +235,7 @@ figures = {
     "turntables": {str(dt): turntable(dt) for dt in STEPS},
     "goes on with moments": goes_on_with_moments(),
     "bounces": {f"{e} {dt}": bounce(e, dt) for e, dt in ((0.0, 1e-3), (0.4, 7e-4), (1.0, 1.3e-3))},
+    "changed": changed(),
     "collisions": {str(e): collision(e) for e in (0.0, 0.5, 1.0)},
     "rolls": {str(dt): roll(dt) for dt in (2e-3, 1.3e-3, 1.7e-3)},
     "rolling slope": incline(0.3, 0.1),

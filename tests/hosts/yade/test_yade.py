@@ -43,6 +43,11 @@ def test_two_spheres_keep_momentum_and_e(figures):
         assert v2 - v1 == pytest.approx(float(e), abs=1e-13), e
 
 
+def test_bodies_and_engines_may_change(figures):
+    (m1, m2), v = figures["changed"]["m"], figures["changed"]["v"]
+    assert v == pytest.approx([-m2 / (m1 + m2)] * 2, rel=1e-12)
+
+
 def test_sliding_becomes_rolling(figures):
     begins = 2 * 2.0 / (7 * 0.1 * 10)
     for dt, found in figures["rolls"].items():
