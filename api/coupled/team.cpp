@@ -2,7 +2,6 @@
 #include "team.hpp"
 
 #include <system_error>
-#include <utility>
 
 #include <unistd.h>
 
@@ -25,10 +24,11 @@ void Team::resize(std::size_t size) {
   }
 }
 
-// Threads of the parent are not in this process: they are neither joined nor destroyed.
+// Threads of the parent are not in this process, and cannot be joined.
 void Team::leave_parent() {
   if (others_.empty() || process_ == getpid()) return;
-  static_cast<void>(new std::vector<std::thread>(std::exchange(others_, {})));
+  for (std::thread& thread : others_) thread.detach();
+  others_.clear();
   arrived_ = 0;
   asked_ = 1;
 }
