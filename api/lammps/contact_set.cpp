@@ -80,6 +80,7 @@ void ContactSet::add(const Contact& contact, const Row& row) {
     normal_.push_back(contact.normal[c]);
     arm_.push_back(-contact.arm * contact.normal[c]);
     counterpart_arm_.push_back(contact.counterpart_arm * contact.normal[c]);
+    if (contact.counterpart >= 0) continue;
     wall_.push_back(contact.wall_velocity[c]);
     wall_previous_.push_back(contact.wall_previous[c]);
     if (has_spins()) wall_spin_.push_back(contact.wall_spin[c]);
@@ -130,6 +131,7 @@ const ilaw_contacts* ContactSet::describe(double time, double position_step) {
   described_.counterpart = counterpart_.data();
   described_.arm = ilaw::input(arm_.data(), 3, 1);
   described_.counterpart_arm = ilaw::input(counterpart_arm_.data(), 3, 1);
+  if (wall_.empty()) return &described_;
   described_.wall_velocity = ilaw::input(wall_.data(), 3, 1);
   described_.wall_previous = ilaw::input(wall_previous_.data(), 3, 1);
   if (has_spins()) described_.wall_spin = ilaw::input(wall_spin_.data(), 3, 1);

@@ -31,7 +31,7 @@ class ContactSet {
   // Begins a step, in which a force makes an impulse over velocity_step.
   void clear(double velocity_step);
   // n points from the counterpart to the body. partner: name of the other atom, or of the wall, in the row of
-  // the atom that keeps the contact.
+  // the atom that keeps the contact. All contacts of a set have a wall, or none has.
   struct Contact {
     int body, counterpart;  // counterpart below 0: a wall
     double partner;
