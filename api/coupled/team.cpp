@@ -10,25 +10,28 @@ namespace ilaw::coupled {
 void Team::resize(std::size_t size) {
   leave_parent();
   if (size == asked_) return;
-  asked_ = size;
   call_ = nullptr;
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
-  for (std::thread& thread : others_) thread.join();
-  others_.clear();
+  if (others_)
+    for (std::thread& thread : *others_) thread.join();
+  others_.reset();
+  asked_ = size;
+  if (size < 2) return;
   process_ = getpid();
+  others_ = std::make_unique<std::vector<std::thread>>();
   const std::uint32_t round = round_.load();
   try {
-    for (std::size_t k = 1; k < size; ++k) others_.emplace_back([this, k, round] { serve(k, round); });
+    for (std::size_t k = 1; k < size; ++k) others_->emplace_back([this, k, round] { serve(k, round); });
   } catch (const std::system_error&) {  // fewer threads than asked
   }
 }
 
-// Threads of the parent are not in this process, and cannot be joined.
+// Threads of the parent are not in this process. Nothing is done with them: their names may be those of
+// others.
 void Team::leave_parent() {
-  if (others_.empty() || process_ == getpid()) return;
-  for (std::thread& thread : others_) thread.detach();
-  others_.clear();
+  if (!others_ || process_ == getpid()) return;
+  static_cast<void>(others_.release());
   arrived_ = 0;
   asked_ = 1;
 }

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -22,14 +23,14 @@ class Team {
   // Number of threads, that of the caller among them. There are fewer where the system gives no more, and in
   // a child of fork, which does not have its parent's.
   void resize(std::size_t size);
-  std::size_t size() const { return others_.size() + 1; }
+  std::size_t size() const { return others_ ? others_->size() + 1 : 1; }
 
   // Calls work(thread), which throws nothing, on all threads, 0 being the caller's, and returns when all are
   // done.
   template <class Work>
   void run(const Work& work) {
     leave_parent();
-    if (others_.empty()) return work(std::size_t{0});
+    if (!others_) return work(std::size_t{0});
     work_ = &work;
     call_ = [](const void* of, std::size_t thread) { (*static_cast<const Work*>(of))(thread); };
     round_.fetch_add(1, std::memory_order_release);
@@ -39,7 +40,7 @@ class Team {
   }
   // Within work: returns when all threads have called it.
   void barrier() {
-    if (others_.empty()) return;
+    if (!others_) return;
     const std::uint32_t passed = passed_.load(std::memory_order_relaxed);
     if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == size()) {
       arrived_.store(0, std::memory_order_relaxed);
@@ -65,7 +66,7 @@ class Team {
   std::atomic<std::uint32_t> round_{0};
   const void* work_ = nullptr;
   void (*call_)(const void*, std::size_t) = nullptr;  // null: the threads end
-  std::vector<std::thread> others_;
+  std::unique_ptr<std::vector<std::thread>> others_;  // null: none
   std::size_t asked_ = 1;
   pid_t process_ = 0;
   alignas(64) std::atomic<std::size_t> arrived_{0};  // all write it: apart from what they wait for

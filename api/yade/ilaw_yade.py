@@ -122,7 +122,17 @@ class Contacts:
         mass, inertia = np.array([(b.state.mass, b.state.inertia[0]) for b in spheres]).reshape(-1, 2).T
         self._inverse_mass = np.divide(1.0, mass, where=moves, out=np.zeros(len(spheres)))
         self._inverse_inertia = np.divide(1.0, inertia, where=moves, out=np.zeros(len(spheres)))
+        self._forget({b.id: b for b in self._bodies or ()}, bodies)
         self._bodies, self._engines = bodies, engines
+
+    def _forget(self, before, bodies):
+        """What is remembered of ids that other bodies have now."""
+        others = [b.id for b in bodies if b.id in before and before[b.id] != b]
+        if not others:
+            return
+        kept = ~np.isin(self.pairs, others).any(axis=1)
+        self.pairs = self.pairs[kept]
+        self._take({name: getattr(self, name)[kept] for name in self._widths})
 
     def _motion(self, h):
         """Places, half-step velocities with all forces but those of contact, and those before."""

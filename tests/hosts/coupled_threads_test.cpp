@@ -106,16 +106,22 @@ TEST(CoupledThreads, MayChangeBetweenSolves) {
 TEST(CoupledThreads, AreMadeAnewInAChildOfFork) {
   Scene one = lattice(cases[0]);
   one.step(g, 1e-12, 5);
-  Scene scene = lattice(cases[0]), later = lattice(cases[0]);
-  scene.threads = later.threads = 2;
-  scene.step(g, 1e-12, 5);
-  std::swap(scene.solver, later.solver);
+  // Two solvers: in the child a new thread of the first may have the name of an old one of the second.
+  Scene first = lattice(cases[0]), second = lattice(cases[0]);
+  Scene later = lattice(cases[0]), last = lattice(cases[0]);
+  for (Scene* scene : {&first, &second, &later, &last}) scene->threads = 2;
+  first.step(g, 1e-12, 5);
+  second.step(g, 1e-12, 5);
+  std::swap(first.solver, later.solver);
+  std::swap(second.solver, last.solver);
   const pid_t child = fork();
   if (child == 0) {
     alarm(60);  // instead of waiting for threads that are not there
     later.step(g, 1e-12, 5);
-    const bool same = later.impulse == one.impulse;
+    last.step(g, 1e-12, 5);
+    const bool same = later.impulse == one.impulse && last.impulse == one.impulse;
     later.solver = {};
+    last.solver = {};
     _exit(same ? 0 : 1);
   }
   int status = -1;

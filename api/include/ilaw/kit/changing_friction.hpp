@@ -100,23 +100,22 @@ void solve_changing_friction_by(const friction_problem<V>& p, const Mu& mu_at, c
                                 Solve solve) {
   friction_problem<V> tried = p;
   for (V& rest : tried.rest) rest = 0.0;  // positive work is taken off the solution alone
-  const auto speed_with = [&](V mu, mask_of<V> needed) {
-    tried.contact.mu[0] = tried.contact.mu[1] = mu;
-    solve(tried, a.friction, needed);
-    return slip_speed_of(tried, a.friction);
-  };
   const V *h = p.contact.h, *q = p.contact.q;
   const V normal = positive_part(-q[0] / h[0]), most = length(q[1], q[2]);
   const V rounding = 0x1p-50 * (most + normal * length(h[3], h[4]));
+  const V frictionless = length(q[1] + h[3] * normal, q[2] + h[4] * normal);
+  a.friction = {};
+  // The solver takes no coefficient of 0, with which friction often begins.
+  const auto speed_with = [&](V mu, mask_of<V> needed) {
+    const mask_of<V> resists = needed & !(mu <= 0.0);
+    tried.contact.mu[0] = tried.contact.mu[1] = mu;
+    if (any(resists)) solve(tried, a.friction, resists);
+    return select(mu <= 0.0, frictionless, slip_speed_of(tried, a.friction));
+  };
   tried.contact.mu[0] = tried.contact.mu[1] = 0.0;
   const mask_of<V> closed = has_closed_form(tried.contact);
   mask_of<V> slips = !closed;
-  if constexpr (!chooses_speed<Mu, V>) {
-    const V least = mu_at(V(0.0)).value;  // often none at all, which the solver does not take
-    const mask_of<V> resists = slips & (least > 0.0);
-    slips = slips & (length(q[1] + h[3] * normal, q[2] + h[4] * normal) > 0.0);
-    if (any(resists)) slips = slips & ((least <= 0.0) | (speed_with(least, resists) > 0.0));
-  }
+  if constexpr (!chooses_speed<Mu, V>) slips = slips & (speed_with(mu_at(V(0.0)).value, slips) > 0.0);
   const full<V> inertia{h[0], h[1], h[2], h[3], h[4], h[5]};
   const vector<V> whole{q[0], q[1], q[2]};
   const vector<V> holding = inertia.solve(whole);  // as an impulse in the other direction it stops the node
