@@ -74,6 +74,7 @@ TEST(RateAndState, SolvesItsEquationForACoupledInertia) {
   const Surface law{.v0 = 1e-3, .d = 0.01};
   NodeRun node("rate_and_state", law.parameters(), 0.01, ILAW_DELASSUS_FULL);
   node.h = {1.0, 1.4, 0.8, 0.3, -0.2, 0.1};
+  int solved = 0;
   for (int k = 0; k < 2000; ++k) {
     const Vector free{-1.0, 3.0 * random(), 3.0 * random()};
     node.state = {law.d / law.v0};
@@ -83,9 +84,11 @@ TEST(RateAndState, SolvesItsEquationForACoupledInertia) {
     const double speed = std::hypot(node.v[1], node.v[2]);
     const double work = node.r[1] * (free[1] + node.v[1]) + node.r[2] * (free[2] + node.v[2]);
     if (speed < 1e-4 || std::abs(work) < 1e-9) continue;  // turned round: its work is taken off
+    ++solved;
     ASSERT_NEAR(std::hypot(node.r[1], node.r[2]), law.at(speed, middle) * node.r[0], 1e-11 * node.r[0]) << k;
     ASSERT_NEAR(node.r[1] * node.v[2] - node.r[2] * node.v[1], 0.0, 1e-13);
   }
+  EXPECT_GT(solved, 1900);
 }
 
 // m v' = F - N mu(v, theta) from a jump of the force, by Runge and Kutta's fourth order.
