@@ -50,7 +50,7 @@ void Bodies::read(const ilaw_bodies& given) {
     }
     previous_[b].velocity = vector(given.v_previous, i, given.dimension);
     previous_[b].spin = rotate() ? vector(given.spin_previous, i, 3) : Vector{};
-    movable_[b] = body.inverse_mass != 0.0 || body.inverse_inertia != 0.0;
+    movable_[b] = moves(body);
     if (inertia_.empty()) continue;
     Inertia& inertia = inertia_[b];
     inertia.inverse_mass = vector(given.inverse_mass, i, given.dimension);

@@ -99,10 +99,10 @@ class Contacts:
             return
         if O.periodic:
             raise NotImplementedError("ilaw: a periodic cell is not served")
-        self._newton = next((e for e in O.engines if isinstance(e, NewtonIntegrator)), None)
+        self._newton = next((e for e in engines if isinstance(e, NewtonIntegrator)), None)
         if self._newton is None or self._newton.damping != 0:
             raise ValueError("ilaw: NewtonIntegrator(damping=0) expected, since damping would change the velocities")
-        self._collider = next((e for e in O.engines if isinstance(e, InsertionSortCollider)), None)
+        self._collider = next((e for e in engines if isinstance(e, InsertionSortCollider)), None)
         self._collided = None
         spheres = [b for b in bodies if isinstance(b.shape, Sphere)]
         self._walls = {b.id: b for b in bodies if isinstance(b.shape, Wall)}
@@ -143,13 +143,13 @@ class Contacts:
                 numbers += a[0], a[1], a[2]  # as _numbers, without its call
         places, v, w, force, torque = np.array(numbers).reshape(-1, 5, 3).transpose(1, 0, 2)
         acts = self._inverse_mass[:, None]
-        free = v + h * acts * force + h * (acts > 0) * np.array(self._newton.gravity)
+        free = v + h * acts * force + h * (acts > 0) * np.array(_numbers(self._newton.gravity))
         turned = w + h * self._inverse_inertia[:, None] * torque
         return places, {"v": free, "w": turned}, {"v": np.ascontiguousarray(v), "w": np.ascontiguousarray(w)}
 
     def _look_at_collider(self):
         """The candidates, whenever the collider has run: pairs (body, counterpart) of ids, sorted, of which one can
-        move, their rows and radii."""
+        move, their rows, walls and radii."""
         key = self._collider and (self._collider.numAction, len(O.interactions))
         if key and key == self._collided:
             return
@@ -164,6 +164,8 @@ class Contacts:
         self._body, self._counterpart = self._row[self._pairs].astype(np.int32).T.copy()
         other = np.where(self._counterpart < 0, self._body, self._counterpart)
         self._radii = self._radius[np.column_stack([self._body, other])]
+        wall_of = {number: k for k, number in enumerate(self._walls)}
+        self._wall = np.array([wall_of[i] for i in self._pairs[self._counterpart < 0, 1].tolist()], np.int64)
         self._collided = key
 
     def _geometry(self, places, v, h):
@@ -174,7 +176,7 @@ class Contacts:
         other, (wall_velocity, wall_previous, wall_spin) = places[counterpart], np.zeros((3, len(body), 3))
         if at.any():
             other[at], wall_velocity[at], wall_previous[at], wall_spin[at] = self._at_walls(
-                self._pairs[at, 1], spins, places[body[at]], v[body[at]], radius[at, 0], h
+                spins, places[body[at]], v[body[at]], radius[at, 0], h
             )
         apart = places[body] - other
         length = np.linalg.norm(apart, axis=1)
@@ -186,17 +188,15 @@ class Contacts:
             "wall_spin": wall_spin,
         }
 
-    def _at_walls(self, ids, spins, centre, v, radius, h):
+    def _at_walls(self, spins, centre, v, radius, h):
         """For spheres at walls: the centres of as large ones behind them, velocities after and before, spins."""
-        of = {number: k for k, number in enumerate(self._walls)}
-        which = np.array([of[i] for i in ids.tolist()])
-        walls = self._walls.values()
+        walls, which = self._walls.values(), self._wall
         place, velocity = (
             np.array([_numbers(getattr(w.state, name)) for w in walls])[which] for name in ("pos", "vel")
         )
         spin = spins[which]
         axis, sense = (np.array([getattr(w.shape, name) for w in walls])[which] for name in ("axis", "sense"))
-        rows = np.arange(len(ids))
+        rows = np.arange(len(which))
         plane = place[rows, axis]
         side = np.where(sense != 0, np.sign(sense), np.where(centre[rows, axis] >= plane, 1.0, -1.0))
         # A point behind the wall, so that a centre which has sunk into it still finds its way out.

@@ -1,8 +1,6 @@
 // Cohesive zones that are solved side by side: the equations of the page, and the same bits in any company.
 #include "any_inertia.hpp"
-#include "support/law_batch.hpp"
-
-#include <ilaw/ext/draft/profile.h>
+#include "support/profile.hpp"
 
 namespace ilaw::testing {
 namespace {
@@ -84,15 +82,6 @@ Nodes drawn_nodes(const Parameters& parameters, Draw& draw, double coupled) {
   }
   nodes.position_step = nodes.velocity_step * (draw.between(0.0, 1.0) < 0.5 ? 1.0 : draw.between(0.7, 1.4));
   return nodes;
-}
-
-// Evaluates them; returns how many were solved one by one.
-std::int64_t one_by_one(Nodes& nodes) {
-  const auto* profile = static_cast<const ilaw_profile*>(nodes.law->law().extension(ILAW_PROFILE));
-  std::int64_t count = 0;
-  const ilaw_batch b = nodes.batch();
-  profile->evaluate_counting(nodes.law->instance(), &b, nullptr, &count);
-  return count;
 }
 
 // Also where two axes are nearly one.
