@@ -93,13 +93,12 @@ const Wrong wrong_calls[] = {
      true},
     {"an impulse with node_stride 0", [](ilaw_batch& b) { b.impulse.node_stride = 0; }, false}};
 
-// In the form of H with spins; the batch of a host of ABI 1.0 ends before them.
+// In the form of H with spins.
 const Wrong wrong_spins[] = {
     {"spin_free null", [](ilaw_batch& b) { b.spin_free = {}; }, false},
     {"moment null", [](ilaw_batch& b) { b.moment = {}; }, false},
     {"a moment with node_stride 0", [](ilaw_batch& b) { b.moment.node_stride = 0; }, false},
-    {"a spin with node_stride 0", [](ilaw_batch& b) { b.spin.node_stride = 0; }, false},
-    {"a batch without spins", [](ilaw_batch& b) { b.struct_size = ILAW_BATCH_SIZE_1_0; }, false}};
+    {"a spin with node_stride 0", [](ilaw_batch& b) { b.spin.node_stride = 0; }, false}};
 
 // Calls that must return a code and write nothing.
 void expect_refused(const Trial& trial, Arrays& arrays, const Inputs& in, const std::vector<double>& before,

@@ -45,7 +45,7 @@ Value value_of(const std::string& name, const nlohmann::json& given) {
   } else if (given == "inf") {
     value.number = infinity;
   } else if (given.is_string()) {
-    value.kind = ILAW_VALUE_TEXT;
+    value.kind = ILAW_KIND_VALUE_TEXT;
     value.text = given;
   } else {
     throw UsageError("parameter '" + name + "' is " + given.dump() +

@@ -82,7 +82,7 @@ void units(const Subject& subject) {
     symbols.emplace_back(subject.law.parameters[k]->symbol);
   for (std::uint32_t k = 0; k < subject.law.parameter_count; ++k) {
     const ilaw_parameter& p = *subject.law.parameters[k];
-    if (p.kind != ILAW_PARAMETER_CHOICE && !parse_unit(p.unit, symbols))
+    if (p.kind != ILAW_KIND_CHOICE && !parse_unit(p.unit, symbols))
       fail_unit("parameter '" + std::string(p.name) + "'", p.unit);
   }
   for (std::uint32_t k = 0; k < subject.law.amount_count; ++k)
@@ -95,11 +95,11 @@ void units(const Subject& subject) {
 void ranges(const Subject& subject) {
   for (std::uint32_t k = 0; k < subject.law.parameter_count; ++k) {
     const ilaw_parameter& p = *subject.law.parameters[k];
-    const bool is_single = p.minimum == p.maximum && !(p.flags & ILAW_PARAMETER_ALLOWS_INFINITY);
-    if (p.kind != ILAW_PARAMETER_CHOICE && is_single)
+    const bool is_single = p.minimum == p.maximum && !(p.flags & ILAW_FLAG_ALLOWS_INFINITY);
+    if (p.kind != ILAW_KIND_CHOICE && is_single)
       throw Finding{
           "parameter '" + std::string(p.name) + "' allows the value " + text_of(p.minimum) + " alone",
-          "a maximum above the minimum, or ILAW_PARAMETER_ALLOWS_INFINITY",
+          "a maximum above the minimum, or ILAW_FLAG_ALLOWS_INFINITY",
           {},
           {}};
   }
@@ -188,7 +188,7 @@ void state_described(const Subject& subject) {
       const bool found = std::any_of(trial.law.state_variables, end, [&](const ilaw_state_variable* known) {
         return std::strcmp(known->name, v.name) == 0 && known->kind == v.kind;
       });
-      const bool carries_axes = trial.setup.global() && v.kind == ILAW_STATE_AXIS;
+      const bool carries_axes = trial.setup.global() && v.kind == ILAW_KIND_AXIS;
       if (!found && !carries_axes)
         throw Finding{"the instance has a state variable '" + std::string(v.name) + "' of kind " +
                           std::to_string(v.kind),

@@ -89,7 +89,7 @@ Inputs empty_inputs(const Trial& trial, std::size_t count) {
 double draw_near(const ilaw_parameter& p, double constant, Draw& draw) {
   const double value = constant * draw.within(0.5, 2.0);
   const bool anywhere = draw.one_in(4) || !std::isfinite(constant) || constant == 0.0;
-  if (anywhere || p.kind == ILAW_PARAMETER_COUNT || !in_range(p, value)) return draw_value(p, draw).number;
+  if (anywhere || p.kind == ILAW_KIND_INTEGER || !in_range(p, value)) return draw_value(p, draw).number;
   return value;
 }
 
@@ -172,7 +172,7 @@ void draw_motion(Inputs& in, bool isotropic, bool without_force, bool is_path, D
 Values constants_of(const Trial& trial, const Inputs& in, std::size_t node) {
   Values values = trial.values;
   for (std::uint32_t k = 0; k < trial.info.per_node_parameter_count; ++k)
-    values = with(values, {trial.info.per_node_parameters[k], ILAW_VALUE_NUMBER, in.per_node[k][node]});
+    values = with(values, {trial.info.per_node_parameters[k], ILAW_KIND_VALUE_NUMBER, in.per_node[k][node]});
   return values;
 }
 

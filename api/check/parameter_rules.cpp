@@ -25,13 +25,15 @@ void expect_refused(const Trial& trial, const Values& values) {
                   {}};
 }
 
-Value number(const ilaw_parameter& p, double value) { return {p.name, ILAW_VALUE_NUMBER, value}; }
-Value text(const ilaw_parameter& p, const std::string& word) { return {p.name, ILAW_VALUE_TEXT, 0.0, word}; }
+Value number(const ilaw_parameter& p, double value) { return {p.name, ILAW_KIND_VALUE_NUMBER, value}; }
+Value text(const ilaw_parameter& p, const std::string& word) {
+  return {p.name, ILAW_KIND_VALUE_TEXT, 0.0, word};
+}
 // A table of one value.
 Value table(const ilaw_parameter& p, const std::vector<TableAxis>& axes, double value) {
   std::size_t size = 1;
   for (const TableAxis& axis : axes) size *= axis.points.size();
-  return {p.name, ILAW_VALUE_TABLE, 0.0, {}, axes, std::vector<double>(size, value)};
+  return {p.name, ILAW_KIND_VALUE_TABLE, 0.0, {}, axes, std::vector<double>(size, value)};
 }
 // A value that a table of the parameter may have: that of the trial, or one near the minimum.
 double value_in_table(const Trial& trial, const ilaw_parameter& p) {
@@ -42,11 +44,11 @@ double value_in_table(const Trial& trial, const ilaw_parameter& p) {
 Values with_fields(const Trial& trial) {
   Values values = trial.values;
   for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k)
-    if (has(*trial.law.parameters[k], ILAW_PARAMETER_IS_FIELD))
-      values = with(values, {trial.law.parameters[k]->name, ILAW_VALUE_PER_NODE});
+    if (has(*trial.law.parameters[k], ILAW_FLAG_FIELD))
+      values = with(values, {trial.law.parameters[k]->name, ILAW_KIND_VALUE_PER_NODE});
   return values;
 }
-bool is_choice(const ilaw_parameter& p) { return p.kind == ILAW_PARAMETER_CHOICE; }
+bool is_choice(const ilaw_parameter& p) { return p.kind == ILAW_KIND_CHOICE; }
 Value default_of(const ilaw_parameter& p) {
   return is_choice(p) ? text(p, p.choices[static_cast<std::size_t>(p.default_value)])
                       : number(p, p.default_value);
@@ -64,17 +66,17 @@ void for_parameters(const Subject& subject, Look look) {
 void unknown(const Subject& subject) {
   const Trial trial = any_trial(subject);
   std::string name = "nobody_has_this";
-  expect_refused(trial, with(trial.values, {name, ILAW_VALUE_NUMBER, 1.0}));
+  expect_refused(trial, with(trial.values, {name, ILAW_KIND_VALUE_NUMBER, 1.0}));
   for (std::uint32_t k = 0; k < subject.law.parameter_count; ++k) {
     name = std::string(subject.law.parameters[k]->name) + "_";
     if (!parameter_of(subject.law, name))
-      expect_refused(trial, with(trial.values, {name, ILAW_VALUE_NUMBER, 1.0}));
+      expect_refused(trial, with(trial.values, {name, ILAW_KIND_VALUE_NUMBER, 1.0}));
   }
 }
 
 void missing(const Subject& subject) {
   for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (!has(p, ILAW_PARAMETER_IS_REQUIRED)) return false;
+    if (!has(p, ILAW_FLAG_REQUIRED)) return false;
     Values values = trial.values;
     std::erase_if(values, [&](const Value& value) { return value.name == p.name; });
     expect_refused(trial, values);
@@ -86,12 +88,11 @@ void range(const Subject& subject) {
   for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
     if (is_choice(p)) return false;
     // A count needs the next whole number, which beyond 2^53 is more than 1 away.
-    const bool whole = p.kind == ILAW_PARAMETER_COUNT;
+    const bool whole = p.kind == ILAW_KIND_INTEGER;
     const double below = whole ? std::min(p.minimum - 1.0, std::nextafter(p.minimum, -infinity))
                                : p.minimum - 1e-9 * std::max(1.0, std::abs(p.minimum));
     expect_refused(trial, with(trial.values, number(p, below)));
-    if (has(p, ILAW_PARAMETER_EXCLUDES_MINIMUM))
-      expect_refused(trial, with(trial.values, number(p, p.minimum)));
+    if (has(p, ILAW_FLAG_EXCLUDES_MINIMUM)) expect_refused(trial, with(trial.values, number(p, p.minimum)));
     const double next = std::nextafter(p.maximum, infinity);
     const double above = whole ? std::max(p.maximum + 1.0, next) : next;
     if (above < infinity) expect_refused(trial, with(trial.values, number(p, above)));
@@ -111,15 +112,14 @@ void infinite(const Subject& subject) {
   for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
     if (is_choice(p)) return false;
     expect_refused(trial, with(trial.values, number(p, -infinity)));
-    if (!has(p, ILAW_PARAMETER_ALLOWS_INFINITY))
-      expect_refused(trial, with(trial.values, number(p, infinity)));
+    if (!has(p, ILAW_FLAG_ALLOWS_INFINITY)) expect_refused(trial, with(trial.values, number(p, infinity)));
     return true;
   });
 }
 
 void whole_number(const Subject& subject) {
   for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (p.kind != ILAW_PARAMETER_COUNT) return false;
+    if (p.kind != ILAW_KIND_INTEGER) return false;
     expect_refused(trial, with(trial.values, number(p, std::floor(p.minimum) + 0.5)));
     expect_refused(trial, with(trial.values, number(p, std::floor(p.minimum) + 1.5)));
     return true;
@@ -151,9 +151,9 @@ void kind(const Subject& subject) {
 
 void varying(const Subject& subject) {
   for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    const bool is_table = p.axis_count > 0, per_node = has(p, ILAW_PARAMETER_ALLOWS_PER_NODE);
+    const bool is_table = p.axis_count > 0, per_node = has(p, ILAW_FLAG_ALLOWS_PER_NODE);
     if (!is_table) expect_refused(trial, with(trial.values, table(p, {{"time", {0.0, 1.0}}}, 0.5)));
-    if (!per_node) expect_refused(trial, with(trial.values, {p.name, ILAW_VALUE_PER_NODE}));
+    if (!per_node) expect_refused(trial, with(trial.values, {p.name, ILAW_KIND_VALUE_PER_NODE}));
     return !is_table || !per_node;
   });
 }
@@ -166,7 +166,7 @@ bool accepted_somewhere(const Trial& trial, const Value& value, Draw& draw) {
     const Setup& setup = setups[static_cast<std::size_t>(k) % setups.size()];
     Values values = {value};
     for (const ilaw_parameter* other : parameters_of(trial.law, setup))
-      if (other->name != value.name && (has(*other, ILAW_PARAMETER_IS_REQUIRED) || (k > 9 && draw.one_in(3))))
+      if (other->name != value.name && (has(*other, ILAW_FLAG_REQUIRED) || (k > 9 && draw.one_in(3))))
         values.push_back(draw_value(*other, draw));
     if (create(trial.law, setup, values)) return true;
   }
@@ -180,9 +180,9 @@ void accepted(const Subject& subject) {
     if (is_choice(p)) {
       for (std::uint32_t k = 0; k < p.choice_count; ++k) ends.push_back(text(p, p.choices[k]));
     } else {
-      if (!has(p, ILAW_PARAMETER_EXCLUDES_MINIMUM)) ends.push_back(number(p, p.minimum));
+      if (!has(p, ILAW_FLAG_EXCLUDES_MINIMUM)) ends.push_back(number(p, p.minimum));
       if (p.maximum < 1e6) ends.push_back(number(p, p.maximum));
-      if (has(p, ILAW_PARAMETER_ALLOWS_INFINITY)) ends.push_back(number(p, infinity));
+      if (has(p, ILAW_FLAG_ALLOWS_INFINITY)) ends.push_back(number(p, infinity));
     }
     for (const Value& value : ends)
       if (!accepted_somewhere(trial, value, draw))
@@ -202,7 +202,7 @@ void defaults(const Subject& subject) {
         for (const ilaw_parameter* p : trial.parameters()) {
           const bool given = std::any_of(values.begin(), values.end(),
                                          [&](const Value& value) { return value.name == p->name; });
-          if (!given && !has(*p, ILAW_PARAMETER_IS_REQUIRED)) values.push_back(default_of(*p));
+          if (!given && !has(*p, ILAW_FLAG_REQUIRED)) values.push_back(default_of(*p));
         }
         if (values.size() == trial.values.size()) return false;
         const Trial said(trial.law, trial.setup, values);
@@ -220,7 +220,7 @@ void needs_spins(const Subject& subject) {
         bool judged = false;
         for (std::uint32_t k = 0; k < trial.law.parameter_count && !trial.setup.spins(); ++k) {
           const ilaw_parameter& p = *trial.law.parameters[k];
-          if (!has(p, ILAW_PARAMETER_NEEDS_SPINS)) continue;
+          if (!has(p, ILAW_FLAG_NEEDS_SPINS)) continue;
           expect_refused(trial, with(trial.values, default_of(p)));
           judged = true;
         }
@@ -247,9 +247,7 @@ bool expect_no_change(const Trial& trial, const Value& value, Draw& draw) {
 }
 
 bool may_be_table(const ilaw_parameter& p) { return !is_choice(p) && p.axis_count > 0; }
-bool may_be_per_node(const ilaw_parameter& p) {
-  return !is_choice(p) && has(p, ILAW_PARAMETER_ALLOWS_PER_NODE);
-}
+bool may_be_per_node(const ilaw_parameter& p) { return !is_choice(p) && has(p, ILAW_FLAG_ALLOWS_PER_NODE); }
 
 // Over each axis, and over as many as there may be.
 std::vector<std::vector<TableAxis>> axes_for(const ilaw_parameter& p) {
@@ -291,7 +289,7 @@ void table_constant(const Subject& subject) {
 // Axes whose value the checker sets: the time, and fields of the law.
 bool is_known_axis(const ilaw_law& law, const std::string& name) {
   const ilaw_parameter* field = parameter_of(law, name);
-  return name == "time" || (field && field->kind == ILAW_PARAMETER_NUMBER);
+  return name == "time" || (field && field->kind == ILAW_KIND_NUMBER);
 }
 
 // A table at a place on its axes gives the bits of the constant that it has there.
@@ -328,14 +326,15 @@ void table_linear(const Subject& subject) {
         bool judged = false;
         for (const ilaw_parameter* one : trial.parameters()) {
           const ilaw_parameter& p = *one;
-          if (!may_be_table(p) || p.kind != ILAW_PARAMETER_NUMBER) continue;
+          if (!may_be_table(p) || p.kind != ILAW_KIND_NUMBER) continue;
           const double a = static_cast<float>(value_in_table(trial, p)), b = 2.0 * a;
           std::vector<std::string> known;
           for (std::uint32_t n = 0; n < p.axis_count; ++n)
             if (p.axes[n] != std::string(p.name) && is_known_axis(trial.law, p.axes[n]))
               known.emplace_back(p.axes[n]);
           for (const std::string& axis : known) {
-            const Value over_one{p.name, ILAW_VALUE_TABLE, 0.0, {}, {{axis, {0.25, 0.75, 1.0}}}, {a, b, a}};
+            const Value over_one{p.name, ILAW_KIND_VALUE_TABLE,       0.0,
+                                 {},     {{axis, {0.25, 0.75, 1.0}}}, {a, b, a}};
             const std::pair<double, double> places[] = {
                 {0.125, a}, {0.25, a}, {0.5, 0.5 * (a + b)}, {0.75, b}, {1.0, a}, {1.125, a}, {1024.0, a}};
             for (const auto& [place, value] : places)
@@ -343,7 +342,7 @@ void table_linear(const Subject& subject) {
           }
           if (known.size() < 2) continue;
           const Value over_two{p.name,
-                               ILAW_VALUE_TABLE,
+                               ILAW_KIND_VALUE_TABLE,
                                0.0,
                                {},
                                {{known[0], {0.25, 0.75, 1.0}}, {known[1], {0.25, 0.75}}},
@@ -388,7 +387,7 @@ void node_constant(const Subject& subject) {
         for (const ilaw_parameter* one : trial.parameters()) {
           const ilaw_parameter& p = *one;
           if (may_be_per_node(p) && in_range(p, number_of(trial.law, trial.values, p.name)))
-            judged = expect_no_change(trial, {p.name, ILAW_VALUE_PER_NODE}, draw) || judged;
+            judged = expect_no_change(trial, {p.name, ILAW_KIND_VALUE_PER_NODE}, draw) || judged;
         }
         return expect_own_constants(trial, draw) || judged;
       },
@@ -401,7 +400,8 @@ void table_shape(const Subject& subject) {
     const double value = value_in_table(trial, p), not_a_number = std::nan("");
     const Values values = with_fields(trial);
     const auto expect = [&](const std::vector<double>& points, const std::vector<double>& table) {
-      expect_refused(trial, with(values, {p.name, ILAW_VALUE_TABLE, 0.0, {}, {{p.axes[0], points}}, table}));
+      expect_refused(trial,
+                     with(values, {p.name, ILAW_KIND_VALUE_TABLE, 0.0, {}, {{p.axes[0], points}}, table}));
     };
     expect({}, {});
     expect({0.0, 0.0}, {value, value});
@@ -436,7 +436,7 @@ void table_field(const Subject& subject) {
     bool judged = false;
     for (std::uint32_t k = 0; may_be_table(p) && k < p.axis_count; ++k) {
       const ilaw_parameter* field = parameter_of(trial.law, p.axes[k]);
-      if (!field || !has(*field, ILAW_PARAMETER_IS_FIELD)) continue;
+      if (!field || !has(*field, ILAW_FLAG_FIELD)) continue;
       Values values = trial.values;
       std::erase_if(values, [&](const Value& value) { return value.name == field->name; });
       expect_refused(trial, with(values, table(p, {{field->name, {0.0, 1.0}}}, value_in_table(trial, p))));
@@ -477,8 +477,8 @@ void field_per_node(const Subject& subject) {
         bool judged = false;
         for (const ilaw_parameter* one : trial.parameters()) {
           const ilaw_parameter& p = *one;
-          if (!has(p, ILAW_PARAMETER_IS_FIELD)) continue;
-          const SetupStruct given(trial.setup, with(trial.values, {p.name, ILAW_VALUE_PER_NODE}));
+          if (!has(p, ILAW_FLAG_FIELD)) continue;
+          const SetupStruct given(trial.setup, with(trial.values, {p.name, ILAW_KIND_VALUE_PER_NODE}));
           Refusal refusal{};
           if (!create(trial.law, given.given, refusal))
             throw Finding{
@@ -501,7 +501,7 @@ void node_range(const Subject& subject) {
         bool judged = false;
         for (const ilaw_parameter* one : trial.parameters()) {
           const ilaw_parameter& p = *one;
-          const Values values = with(trial.values, {p.name, ILAW_VALUE_PER_NODE});
+          const Values values = with(trial.values, {p.name, ILAW_KIND_VALUE_PER_NODE});
           const double good = number_of(trial.law, trial.values, p.name);
           if (!may_be_per_node(p) || !std::isfinite(good)) continue;
           if (!create(trial.law, trial.setup, values)) continue;
@@ -514,8 +514,8 @@ void node_range(const Subject& subject) {
           if (arrays.initialise(script[0]) != ILAW_OK) continue;
           const std::vector<double> state = arrays.state();
           if (arrays.evaluate(script[0]).code != ILAW_OK) continue;
-          for (const double bad : {p.minimum - 1.0, std::nan(""),
-                                   has(p, ILAW_PARAMETER_ALLOWS_INFINITY) ? -infinity : infinity}) {
+          for (const double bad :
+               {p.minimum - 1.0, std::nan(""), has(p, ILAW_FLAG_ALLOWS_INFINITY) ? -infinity : infinity}) {
             own[4] = bad;
             arrays.set_state(state);
             const Results found = arrays.evaluate(script[0]);
@@ -538,18 +538,18 @@ std::vector<Rule> parameter_rules() {
   return {{"parameter-unknown", "A parameter that the law does not have is refused.",
            "ilaw.h, ILAW_INVALID_PARAMETER", Needs::instance, unknown},
           {"parameter-missing", "A set without a required parameter is refused.",
-           "ilaw.h, ILAW_PARAMETER_IS_REQUIRED", Needs::instance, missing},
+           "ilaw.h, ILAW_FLAG_REQUIRED", Needs::instance, missing},
           {"parameter-range",
            "A finite value below the minimum, at an excluded one, or above the maximum is refused.",
            "ilaw.h, ilaw_parameter.minimum", Needs::instance, range},
           {"parameter-nan", "NaN is no value of a parameter.", "ilaw.h, ilaw_parameter.minimum",
            Needs::instance, no_number},
           {"parameter-infinity", "Infinity is refused where it is not allowed, -infinity always.",
-           "ilaw.h, ILAW_PARAMETER_ALLOWS_INFINITY", Needs::instance, infinite},
-          {"parameter-whole", "A count is a whole number.", "ilaw.h, ILAW_PARAMETER_COUNT", Needs::instance,
+           "ilaw.h, ILAW_FLAG_ALLOWS_INFINITY", Needs::instance, infinite},
+          {"parameter-whole", "A count is a whole number.", "ilaw.h, ILAW_KIND_INTEGER", Needs::instance,
            whole_number},
-          {"parameter-choice", "A text that is none of the choices is refused.",
-           "ilaw.h, ILAW_PARAMETER_CHOICE", Needs::instance, choice},
+          {"parameter-choice", "A text that is none of the choices is refused.", "ilaw.h, ILAW_KIND_CHOICE",
+           Needs::instance, choice},
           {"parameter-kind", "A value of a kind that the parameter does not have is refused.",
            "ilaw.h, ilaw_argument.kind", Needs::instance, kind},
           {"parameter-varying", "Tables, and values per node, are refused where they are not allowed.",
@@ -562,7 +562,7 @@ std::vector<Rule> parameter_rules() {
            "ilaw.h, ilaw_parameter.default_value", Needs::motion, defaults},
           {"parameter-spins",
            "A parameter that needs spins is refused for a form of H without, at its default value, too.",
-           "ilaw.h, ILAW_PARAMETER_NEEDS_SPINS", Needs::instance, needs_spins},
+           "ilaw.h, ILAW_FLAG_NEEDS_SPINS", Needs::instance, needs_spins},
           {"table-shape",
            "A table without points, with points that do not increase or a value out of range is refused.",
            "ilaw.h, ilaw_axis.points", Needs::instance, table_shape},
@@ -572,18 +572,18 @@ std::vector<Rule> parameter_rules() {
            Needs::instance, table_field},
           {"table-limit", "A table of more than ILAW_TABLE_MAX_VALUES values is refused.",
            "ilaw.h, ILAW_TABLE_MAX_VALUES", Needs::instance, table_limit},
-          {"table-constant", "A table of one value gives the bits of that value.", "ilaw.h, ILAW_VALUE_TABLE",
-           Needs::motion, table_constant},
+          {"table-constant", "A table of one value gives the bits of that value.",
+           "ilaw.h, ILAW_KIND_VALUE_TABLE", Needs::motion, table_constant},
           {"table-linear",
            "A table is linear along each axis and constant beyond its ends; the last axis varies fastest.",
-           "ilaw.h, ILAW_VALUE_TABLE", Needs::motion, table_linear},
-          {"field-per-node", "A field is accepted per node.", "ilaw.h, ILAW_PARAMETER_IS_FIELD",
-           Needs::instance, field_per_node},
+           "ilaw.h, ILAW_KIND_VALUE_TABLE", Needs::motion, table_linear},
+          {"field-per-node", "A field is accepted per node.", "ilaw.h, ILAW_FLAG_FIELD", Needs::instance,
+           field_per_node},
           {"per-node-constant",
            "A value per node gives the bits that it gives as a constant, whatever other nodes have.",
-           "ilaw.h, ILAW_VALUE_PER_NODE", Needs::motion, node_constant},
+           "ilaw.h, ILAW_KIND_VALUE_PER_NODE", Needs::motion, node_constant},
           {"per-node-range", "A value per node that is out of range is bad input at its node.",
-           "ilaw.h, ILAW_VALUE_PER_NODE", Needs::motion, node_range}};
+           "ilaw.h, ILAW_KIND_VALUE_PER_NODE", Needs::motion, node_range}};
 }
 
 }  // namespace ilaw::check

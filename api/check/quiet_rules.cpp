@@ -77,7 +77,7 @@ void prints(const Subject& subject) {
     Script script = draw_script(trial, draw);
     script[1].v_free[0] = std::nan("");
     run(trial, script);
-    create(trial.law, trial.setup, with(trial.values, {"nobody_has_this", ILAW_VALUE_NUMBER, 1.0}));
+    create(trial.law, trial.setup, with(trial.values, {"nobody_has_this", ILAW_KIND_VALUE_NUMBER, 1.0}));
     return true;
   });
   std::fflush(nullptr);

@@ -263,7 +263,7 @@ double cone_of(const Trial& trial) {
   double most = -1.0;
   for (const char* name : {"friction", "friction_2"}) {
     const ilaw_parameter* p = parameter_of(trial.law, name);
-    if (!p || p->kind != ILAW_PARAMETER_NUMBER || std::string(p->unit) != "1") continue;
+    if (!p || p->kind != ILAW_KIND_NUMBER || std::string(p->unit) != "1") continue;
     const double value = number_of(trial.law, trial.values, name);
     if (name == std::string("friction_2") && std::isinf(value)) continue;  // the same as friction
     most = std::max(most, value);

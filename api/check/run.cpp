@@ -53,7 +53,7 @@ Vector Results::moment_at(std::size_t node) const {
 }
 
 Field::Field(Memory& memory, const char* name, std::size_t components, std::size_t room, Order order, Use use,
-             ilaw_numbers numbers)
+             ilaw_number_type numbers)
     : name_(name), components_(components), is_backward_(order == Order::backward) {
   node_stride_ = order == Order::by_component ? 1 : order == Order::spread ? 2 * components + 1 : components;
   component_stride_ = order == Order::by_component ? room + 3 : order == Order::spread ? 2 : 1;

@@ -51,7 +51,7 @@ class Field {
  public:
   Field() = default;
   Field(Memory& memory, const char* name, std::size_t components, std::size_t room, Order order, Use use,
-        ilaw_numbers numbers);
+        ilaw_number_type numbers);
 
   bool given() const { return values_ || floats_; }
   double get(std::size_t node, std::size_t component) const { return number(place(node, component)); }

@@ -212,7 +212,7 @@ bool is_line(const char* text) {
 
 void refusal_message(const Subject& subject) {
   const Trial trial = any_trial(subject);
-  const Values values = with(trial.values, {"nobody_has_this", ILAW_VALUE_NUMBER, 1.0});
+  const Values values = with(trial.values, {"nobody_has_this", ILAW_KIND_VALUE_NUMBER, 1.0});
   const SetupStruct given(trial.setup, values);
   set_setting(text_of(trial.setup) + "; " + text_of(values));
   for (const std::size_t size : {std::size_t{512}, std::size_t{8}, std::size_t{1}, std::size_t{0}}) {

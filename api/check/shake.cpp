@@ -51,9 +51,9 @@ void Shake::change_node(double* state) {
     size = std::max(size, std::abs(value));
   });
   for_variables([&](const ilaw_state_variable& variable, double& value) {
-    if (variable.kind == ILAW_STATE_SCALAR)
+    if (variable.kind == ILAW_KIND_SCALAR)
       value = within_range(value);
-    else if (variable.kind != ILAW_STATE_AXIS)
+    else if (variable.kind != ILAW_KIND_AXIS)
       value += rounding_of(sizes[variable.unit]);
   });
 }

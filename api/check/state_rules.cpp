@@ -104,7 +104,7 @@ void skip_free(const Subject& subject) {
 bool is_history(const Trial& trial, std::size_t entry) {
   for (std::uint32_t k = 0; k < trial.info.state_variable_count; ++k) {
     const ilaw_state_variable& variable = *trial.info.state_variables[k];
-    if (entry < variable.count) return variable.kind == ILAW_STATE_HISTORY;
+    if (entry < variable.count) return variable.kind == ILAW_KIND_HISTORY;
     entry -= variable.count;
   }
   return false;

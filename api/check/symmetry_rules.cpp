@@ -141,7 +141,7 @@ void form_agreement(const Subject& subject) {
 // With tangents a state is in local components, so it is the same in any axes.
 bool keeps_axes(const Trial& trial) {
   for (std::uint32_t k = 0; k < trial.info.state_variable_count; ++k)
-    if (trial.info.state_variables[k]->kind == ILAW_STATE_AXIS) return true;
+    if (trial.info.state_variables[k]->kind == ILAW_KIND_AXIS) return true;
   return false;
 }
 
@@ -260,7 +260,7 @@ std::vector<double> turned_state(const Trial& trial, std::vector<double> state, 
   for (std::size_t first = 0; first < state.size(); first += trial.info.state_size)
     for (std::size_t k = 0, at = first; k < trial.info.state_variable_count; ++k) {
       const ilaw_state_variable& variable = *trial.info.state_variables[k];
-      if (variable.kind == ILAW_STATE_AXIS) {
+      if (variable.kind == ILAW_KIND_AXIS) {
         Vector axis{};
         std::copy_n(&state[at], d, axis.begin());
         std::copy_n(times(rotation, axis).begin(), d, &state[at]);
@@ -356,12 +356,12 @@ std::optional<Values> in_units(const Trial& trial, const Units& units) {
   }
   Values values = trial.values;
   for (const ilaw_parameter* p : trial.parameters()) {
-    if (p->kind == ILAW_PARAMETER_CHOICE) continue;
+    if (p->kind == ILAW_KIND_CHOICE) continue;
     const std::optional<Dimensions> unit = parse_unit(p->unit, symbols);
     if (!unit) return std::nullopt;
     const double value = number_of(trial.law, values, p->name), scaled = unit->in(units, numbers) * value;
     if (!std::isfinite(scaled) && !std::isinf(value)) return std::nullopt;
-    values = with(values, {p->name, ILAW_VALUE_NUMBER, scaled});
+    values = with(values, {p->name, ILAW_KIND_VALUE_NUMBER, scaled});
   }
   return values;
 }
@@ -419,7 +419,7 @@ std::vector<Rule> symmetry_rules() {
       {"frame-indifference", "An impulse, and a moment, is the same in local axes and in those of the host.",
        "ilaw.h, ILAW_FRAME_GLOBAL", Needs::motion, frame_indifference},
       {"frame-turned", "Where the whole model is turned, impulses and moments turn with it.",
-       "ilaw.h, ILAW_STATE_AXIS", Needs::motion, turned_whole},
+       "ilaw.h, ILAW_KIND_AXIS", Needs::motion, turned_whole},
       {"history-carried",
        "Without tangents a history is carried from normal to normal by the shortest rotation.",
        "abi.md, Histories and rotations", Needs::motion, history_carried},

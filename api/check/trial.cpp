@@ -27,9 +27,9 @@ std::string text_of_number(double value) {
 
 std::string text_of(const Value& value) {
   switch (value.kind) {
-    case ILAW_VALUE_TEXT:
+    case ILAW_KIND_VALUE_TEXT:
       return value.name + " = \"" + value.text + "\"";
-    case ILAW_VALUE_TABLE: {
+    case ILAW_KIND_VALUE_TABLE: {
       const auto list = [](const std::vector<double>& numbers) {
         std::string all;
         for (std::size_t k = 0; k < numbers.size() && k < 20; ++k)
@@ -41,7 +41,7 @@ std::string text_of(const Value& value) {
         axes += (axes.empty() ? "" : ", ") + axis.name + " " + list(axis.points);
       return value.name + " = table " + list(value.table) + " over " + axes;
     }
-    case ILAW_VALUE_PER_NODE:
+    case ILAW_KIND_VALUE_PER_NODE:
       return value.name + " per node";
     default:
       return value.name + " = " + text_of_number(value.number);
@@ -89,8 +89,8 @@ SetupStruct::SetupStruct(const Setup& setup, const Values& values)
     argument.kind = value.kind;
     argument.name = value.name.c_str();
     argument.number = value.number;
-    if (value.kind == ILAW_VALUE_TEXT) argument.text = value.text.c_str();
-    if (value.kind == ILAW_VALUE_TABLE) {
+    if (value.kind == ILAW_KIND_VALUE_TEXT) argument.text = value.text.c_str();
+    if (value.kind == ILAW_KIND_VALUE_TABLE) {
       const std::size_t at = arguments.size();
       for (const TableAxis& axis : value.axes)
         axes[at].push_back({sizeof(ilaw_axis), 0, axis.name.c_str(), axis.points.data(), axis.points.size()});
@@ -214,9 +214,8 @@ const ilaw_parameter* parameter_of(const ilaw_law& law, const std::string& name)
 }
 
 bool in_range(const ilaw_parameter& p, double value) {
-  if (value == infinity) return has(p, ILAW_PARAMETER_ALLOWS_INFINITY);
-  return value <= p.maximum &&
-         (has(p, ILAW_PARAMETER_EXCLUDES_MINIMUM) ? value > p.minimum : value >= p.minimum);
+  if (value == infinity) return has(p, ILAW_FLAG_ALLOWS_INFINITY);
+  return value <= p.maximum && (has(p, ILAW_FLAG_EXCLUDES_MINIMUM) ? value > p.minimum : value >= p.minimum);
 }
 
 double number_of(const ilaw_law& law, const Values& values, const std::string& name) {
@@ -228,7 +227,7 @@ double number_of(const ilaw_law& law, const Values& values, const std::string& n
 
 std::vector<Setup> setups_of(const ilaw_law& law) {
   std::vector<Setup> setups;
-  for (const ilaw_numbers numbers : {ILAW_NUMBERS_DOUBLE, ILAW_NUMBERS_FLOAT})
+  for (const ilaw_number_type numbers : {ILAW_NUMBERS_DOUBLE, ILAW_NUMBERS_FLOAT})
     for (std::uint32_t d = 3; d >= 1; --d)
       for (const std::uint32_t form :
            {ILAW_DELASSUS_TRANSVERSE_SPIN, ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL,
@@ -247,13 +246,13 @@ std::vector<Setup> setups_of(const ilaw_law& law) {
 std::vector<const ilaw_parameter*> parameters_of(const ilaw_law& law, const Setup& setup) {
   std::vector<const ilaw_parameter*> all(law.parameters, law.parameters + law.parameter_count);
   if (!setup.spins())
-    std::erase_if(all, [](const ilaw_parameter* p) { return has(*p, ILAW_PARAMETER_NEEDS_SPINS); });
+    std::erase_if(all, [](const ilaw_parameter* p) { return has(*p, ILAW_FLAG_NEEDS_SPINS); });
   return all;
 }
 
 std::optional<double> natural_value(const ilaw_law& law, const ilaw_parameter& p) {
   // Moments have arms of order one; other lengths are those of a step.
-  const Units natural{1.0, has(p, ILAW_PARAMETER_NEEDS_SPINS) ? 1.0 : 0x1p-10, 0x1p-10};
+  const Units natural{1.0, has(p, ILAW_FLAG_NEEDS_SPINS) ? 1.0 : 0x1p-10, 0x1p-10};
   std::vector<std::string> symbols;
   std::map<std::string, double> numbers;
   for (std::uint32_t k = 0; k < law.parameter_count; ++k) {
@@ -269,16 +268,16 @@ std::optional<double> natural_value(const ilaw_law& law, const ilaw_parameter& p
 
 Value draw_value(const ilaw_parameter& p, Draw& draw, std::optional<double> natural) {
   Value value{p.name};
-  if (p.kind == ILAW_PARAMETER_CHOICE) {
-    value.kind = ILAW_VALUE_TEXT;
+  if (p.kind == ILAW_KIND_CHOICE) {
+    value.kind = ILAW_KIND_VALUE_TEXT;
     value.text = p.choices[draw.below(p.choice_count)];
     return value;
   }
-  if (has(p, ILAW_PARAMETER_ALLOWS_INFINITY) && draw.one_in(8)) {
+  if (has(p, ILAW_FLAG_ALLOWS_INFINITY) && draw.one_in(8)) {
     value.number = infinity;
     return value;
   }
-  const bool whole = p.kind == ILAW_PARAMETER_COUNT;
+  const bool whole = p.kind == ILAW_KIND_INTEGER;
   const double low = p.minimum, high = std::min(p.maximum, whole ? std::max(8.0, low + 2.0) : p.maximum);
   // Most numbers are of order one, strengths and stiffnesses are large, times and toughnesses small.
   const double drawn = high - low <= 4.0 ? draw.within(low, high)
@@ -296,7 +295,7 @@ std::optional<Values> draw_values(const ilaw_law& law, const Setup& setup, Draw&
   for (int k = 0; k < attempts; ++k) {
     Values values;
     for (const ilaw_parameter* p : parameters_of(law, setup))
-      if (has(*p, ILAW_PARAMETER_IS_REQUIRED) || draw.one_in(2)) {
+      if (has(*p, ILAW_FLAG_REQUIRED) || draw.one_in(2)) {
         values.push_back(draw_value(*p, draw, is_natural ? natural_value(law, *p) : std::nullopt));
         // So that the value may be given per node, too.
         const double rounded = setup.rounded(values.back().number);
@@ -311,9 +310,9 @@ std::optional<Values> given_per_node(const Trial& trial) {
   Values values = trial.values;
   bool varies = false;
   for (const ilaw_parameter* p : trial.parameters()) {
-    if (p->kind == ILAW_PARAMETER_CHOICE || !has(*p, ILAW_PARAMETER_ALLOWS_PER_NODE)) continue;
+    if (p->kind == ILAW_KIND_CHOICE || !has(*p, ILAW_FLAG_ALLOWS_PER_NODE)) continue;
     const double constant = number_of(trial.law, trial.values, p->name);
-    const Values more = with(values, {p->name, ILAW_VALUE_PER_NODE, constant});
+    const Values more = with(values, {p->name, ILAW_KIND_VALUE_PER_NODE, constant});
     if (!create(trial.law, trial.setup, more)) continue;
     values = more;
     varies = true;

@@ -31,7 +31,7 @@ struct TableAxis {
 // A value of a parameter, with what its ilaw_argument points to.
 struct Value {
   std::string name;
-  std::uint32_t kind = ILAW_VALUE_NUMBER;
+  std::uint32_t kind = ILAW_KIND_VALUE_NUMBER;
   double number = 0.0;
   std::string text{};
   std::vector<TableAxis> axes{};
@@ -44,7 +44,7 @@ Values with(Values values, const Value& value);
 
 struct Setup {
   std::uint32_t dimension = 3, form = ILAW_DELASSUS_SCALAR, frame = ILAW_FRAME_LOCAL, has_tangent = 0;
-  ilaw_numbers numbers = ILAW_NUMBERS_DOUBLE;
+  ilaw_number_type numbers = ILAW_NUMBERS_DOUBLE;
 
   bool global() const { return frame == ILAW_FRAME_GLOBAL; }
   bool floats() const { return numbers == ILAW_NUMBERS_FLOAT; }

@@ -23,7 +23,7 @@ module ilaw
 
   ! The value of a parameter of a law.
   type, private :: value
-    integer(c_int32_t) :: kind = ILAW_VALUE_NUMBER
+    integer(c_int32_t) :: kind = ILAW_KIND_VALUE_NUMBER
     character(:), allocatable :: name
     real(c_double) :: number = 0
     character(:), allocatable :: text
@@ -174,7 +174,7 @@ contains
     class(ilaw_values), intent(inout) :: self
     character(*), intent(in) :: name, text
     type(value) :: added
-    added%kind = ILAW_VALUE_TEXT
+    added%kind = ILAW_KIND_VALUE_TEXT
     added%text = trim(text)//c_null_char
     call self%append(name, added)
   end subroutine
@@ -243,7 +243,7 @@ contains
     character(*), intent(in) :: name
     real(c_double), intent(in) :: table(:)
     type(value), intent(inout) :: added
-    added%kind = ILAW_VALUE_TABLE
+    added%kind = ILAW_KIND_VALUE_TABLE
     added%table = table
     if (allocated(added%fault)) added%fault = 'parameter '''//trim(name)//''': '//added%fault
     call self%append(name, added)
@@ -253,7 +253,7 @@ contains
     class(ilaw_values), intent(inout) :: self
     character(*), intent(in) :: name
     type(value) :: added
-    added%kind = ILAW_VALUE_PER_NODE
+    added%kind = ILAW_KIND_VALUE_PER_NODE
     call self%append(name, added)
   end subroutine
 
@@ -322,7 +322,7 @@ contains
     do k = 1, size(list)
       call c_f_pointer(list(k), parameter)
       if (ilaw_text(parameter%name) /= name) cycle
-      if (iand(parameter%flags, ILAW_PARAMETER_IS_FIELD) /= 0) call values%set_per_node(name)
+      if (iand(parameter%flags, ILAW_FLAG_FIELD) /= 0) call values%set_per_node(name)
     end do
   end subroutine
 

@@ -12,7 +12,7 @@ module ilaw_abi
   public
 
   integer(c_int32_t), parameter :: &
-    ILAW_ABI_MAJOR = 1, ILAW_ABI_MINOR = 1
+    ILAW_ABI_MAJOR = 1, ILAW_ABI_MINOR = 0, ILAW_STACK_SIZE = 65536
 
   integer(c_int32_t), parameter :: &
     ILAW_OK = 0, ILAW_BAD_NODES = 1, ILAW_INVALID_ARGUMENT = -1, ILAW_INVALID_PARAMETER = -2, &
@@ -33,7 +33,7 @@ module ilaw_abi
 
   integer(c_int32_t), parameter :: &
     ILAW_INPUT_GAP = 1, ILAW_INPUT_V_PREVIOUS = 2, ILAW_INPUT_AREA = 4, ILAW_INPUT_NORMAL = 8, &
-    ILAW_INPUT_TANGENT = 16
+    ILAW_INPUT_TANGENT = 16, ILAW_INPUT_V_SMOOTH = 32
 
   integer(c_int32_t), parameter :: &
     ILAW_OUTPUT_VELOCITY = 1, ILAW_OUTPUT_STATUS = 2, ILAW_OUTPUT_ENERGY = 4
@@ -45,21 +45,22 @@ module ilaw_abi
     ILAW_MAY_SKIP_FRESH = 1, ILAW_MAY_SKIP_FREE = 2
 
   integer(c_int32_t), parameter :: &
-    ILAW_PARAMETER_NUMBER = 0, ILAW_PARAMETER_COUNT = 1, ILAW_PARAMETER_CHOICE = 2
+    ILAW_KIND_NUMBER = 0, ILAW_KIND_INTEGER = 1, ILAW_KIND_CHOICE = 2
 
   integer(c_int32_t), parameter :: &
-    ILAW_PARAMETER_IS_REQUIRED = 1, ILAW_PARAMETER_EXCLUDES_MINIMUM = 2, ILAW_PARAMETER_ALLOWS_INFINITY = 4, &
-    ILAW_PARAMETER_ALLOWS_PER_NODE = 8, ILAW_PARAMETER_IS_FIELD = 16, ILAW_PARAMETER_NEEDS_SPINS = 32
+    ILAW_FLAG_REQUIRED = 1, ILAW_FLAG_EXCLUDES_MINIMUM = 2, ILAW_FLAG_ALLOWS_INFINITY = 4, &
+    ILAW_FLAG_ALLOWS_PER_NODE = 8, ILAW_FLAG_FIELD = 16, ILAW_FLAG_NEEDS_SPINS = 32
 
   integer(c_int32_t), parameter :: &
-    ILAW_VALUE_NUMBER = 0, ILAW_VALUE_TEXT = 1, ILAW_VALUE_TABLE = 2, ILAW_VALUE_PER_NODE = 3
+    ILAW_KIND_VALUE_NUMBER = 0, ILAW_KIND_VALUE_TEXT = 1, ILAW_KIND_VALUE_TABLE = 2, &
+    ILAW_KIND_VALUE_PER_NODE = 3
 
   integer(c_int32_t), parameter :: &
-    ILAW_STATE_SCALAR = 0, ILAW_STATE_VECTOR = 1, ILAW_STATE_HISTORY = 2, ILAW_STATE_AXIS = 3, &
-    ILAW_STATE_TANGENTIAL = 4
+    ILAW_KIND_SCALAR = 0, ILAW_KIND_VECTOR = 1, ILAW_KIND_HISTORY = 2, ILAW_KIND_AXIS = 3, &
+    ILAW_KIND_TANGENTIAL = 4
 
   integer(c_int32_t), parameter :: &
-    ILAW_VARIABLE_INTERNAL = 1
+    ILAW_FLAG_INTERNAL = 1
 
   integer(c_int32_t), parameter :: &
     ILAW_FREE = 0, ILAW_CLOSED = 1, ILAW_STICK = 2, ILAW_SLIP = 3, ILAW_BONDED = 4, ILAW_BROKEN = 5, &
@@ -174,7 +175,7 @@ module ilaw_abi
   end type
 
   type, bind(c) :: ilaw_batch
-    integer(c_int32_t) :: struct_size = 640
+    integer(c_int32_t) :: struct_size = 672
     integer(c_int32_t) :: index_base = 1
     integer(c_int64_t) :: flags = 0
     integer(c_int64_t) :: node_count = 0
@@ -184,10 +185,13 @@ module ilaw_abi
     real(c_double) :: velocity_step = 0
     real(c_double) :: position_step = 0
     type(ilaw_input) :: v_free
+    type(ilaw_input) :: v_smooth
     type(ilaw_input) :: delassus
     type(ilaw_input) :: gap
     type(ilaw_input) :: gap_offset
     type(ilaw_input) :: v_previous
+    type(ilaw_input) :: spin_free
+    type(ilaw_input) :: spin_previous
     type(ilaw_input) :: area
     type(ilaw_input) :: normal
     type(ilaw_input) :: tangent
@@ -195,15 +199,13 @@ module ilaw_abi
     type(ilaw_input) :: state_in
     type(ilaw_output) :: state_out
     type(ilaw_output) :: impulse
+    type(ilaw_output) :: moment
     type(ilaw_output) :: velocity
+    type(ilaw_output) :: spin
     type(ilaw_output) :: energy
     type(c_ptr) :: status = c_null_ptr
     integer(c_int64_t) :: status_stride = 0
     type(c_ptr) :: amounts = c_null_ptr
-    type(ilaw_input) :: spin_free
-    type(ilaw_input) :: spin_previous
-    type(ilaw_output) :: moment
-    type(ilaw_output) :: spin
   end type
 
   type, bind(c) :: ilaw_report

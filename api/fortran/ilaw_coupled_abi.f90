@@ -46,14 +46,14 @@ module ilaw_coupled_abi
     type(ilaw_input) :: counterpart_arm
     type(ilaw_input) :: wall_velocity
     type(ilaw_input) :: wall_previous
+    type(ilaw_input) :: wall_spin
+    type(ilaw_input) :: wall_spin_previous
     integer(c_int32_t) :: body_count = 0
     integer(c_int32_t) :: counterpart_count = 0
     type(ilaw_input) :: body_weight
     type(ilaw_input) :: counterpart_weight
     integer(c_int32_t) :: weight_size = 0
     integer(c_int32_t) :: reserved = 0
-    type(ilaw_input) :: wall_spin
-    type(ilaw_input) :: wall_spin_previous
   end type
 
   type, bind(c) :: ilaw_exchange

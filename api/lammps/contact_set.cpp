@@ -27,7 +27,7 @@ double number(const std::string& name, const std::string& text) {
 
 // Spheres have arms along the normal. A law that serves spins may give moments; a law that knows neither form
 // is given the matrix.
-ilaw_delassus_forms form_of(const ilaw_law& law) {
+ilaw_delassus_form form_of(const ilaw_law& law) {
   for (const std::uint32_t form : {ILAW_DELASSUS_TRANSVERSE_SPIN, ILAW_DELASSUS_TRANSVERSE})
     if ((law.delassus_forms & form) != 0) return form;
   return ILAW_DELASSUS_FULL;
@@ -42,7 +42,7 @@ ContactSet::ContactSet(const std::string& law, const std::vector<std::array<std:
   ilaw::parameters given;
   for (const auto& [name, text] : parameters) {
     const ilaw_parameter* known = find(description, name);
-    if (known && known->kind == ILAW_PARAMETER_CHOICE)
+    if (known && known->kind == ILAW_KIND_CHOICE)
       given.text(name, text);
     else
       given.number(name, known ? number(name, text) : 0.0);  // create refuses an unknown name

@@ -16,7 +16,7 @@ constexpr std::uint32_t known_inputs = 2 * ILAW_INPUT_TANGENT - 1;
 constexpr std::uint32_t known_outputs = 2 * ILAW_OUTPUT_ENERGY - 1;
 constexpr std::uint32_t known_capabilities = ILAW_CAN_ADHERE | ILAW_CAN_STORE_ENERGY;
 constexpr std::uint32_t known_permissions = ILAW_MAY_SKIP_FRESH | ILAW_MAY_SKIP_FREE;
-constexpr std::uint32_t known_parameter_flags = 2 * ILAW_PARAMETER_NEEDS_SPINS - 1;
+constexpr std::uint32_t known_parameter_flags = 2 * ILAW_FLAG_NEEDS_SPINS - 1;
 
 // Doubles of state per node: 8 MB, more than any law needs.
 constexpr std::uint64_t most_state = std::uint64_t{1} << 20;
@@ -30,18 +30,18 @@ void check_unique(const checker& check, std::set<std::string>& seen, const char*
 bool has(const ilaw_parameter& p, ilaw_parameter_flags flag) { return (p.flags & flag) != 0; }
 
 bool in_range(const ilaw_parameter& p, double value) {
-  if (value == INFINITY) return has(p, ILAW_PARAMETER_ALLOWS_INFINITY);
-  const bool above = has(p, ILAW_PARAMETER_EXCLUDES_MINIMUM) ? value > p.minimum : value >= p.minimum;
+  if (value == INFINITY) return has(p, ILAW_FLAG_ALLOWS_INFINITY);
+  const bool above = has(p, ILAW_FLAG_EXCLUDES_MINIMUM) ? value > p.minimum : value >= p.minimum;
   return above && value <= p.maximum;
 }
 
 void check_choices(const checker& check, ilaw_parameter& p) {
   p.choices = check.array(p.choices, p.choice_count, "choices");
   check.texts(p.choices, p.choice_count, "a choice");
-  if (p.kind != ILAW_PARAMETER_CHOICE) return;
+  if (p.kind != ILAW_KIND_CHOICE) return;
   if (p.choice_count == 0) check.refuse("choice_count is 0, expected at least 1");
   const double chosen = p.default_value;
-  if (!has(p, ILAW_PARAMETER_IS_REQUIRED) &&
+  if (!has(p, ILAW_FLAG_REQUIRED) &&
       !(chosen >= 0.0 && chosen < p.choice_count && chosen == std::floor(chosen)))
     check.refuse("default " + std::to_string(chosen) + " is no index of its choices");
 }
@@ -56,7 +56,7 @@ void check_axes(const checker& check, ilaw_parameter& p) {
 }
 
 void check_parameter(const checker& check, ilaw_parameter& p) {
-  check.kind(p.kind, ILAW_PARAMETER_CHOICE, "kind");
+  check.kind(p.kind, ILAW_KIND_CHOICE, "kind");
   check.mask(p.flags, known_parameter_flags, "flags");
   check.zero(p.reserved, "reserved");
   check.text(p.symbol, "symbol");
@@ -66,14 +66,14 @@ void check_parameter(const checker& check, ilaw_parameter& p) {
   if (!(p.minimum <= p.maximum))
     check.refuse("minimum " + std::to_string(p.minimum) + " is not below maximum " +
                  std::to_string(p.maximum));
-  if (!has(p, ILAW_PARAMETER_IS_REQUIRED) && !in_range(p, p.default_value))
+  if (!has(p, ILAW_FLAG_REQUIRED) && !in_range(p, p.default_value))
     check.refuse("default " + std::to_string(p.default_value) + " lies outside its own range");
   check_axes(check, p);
 }
 
 void check_state_variable(const checker& check, ilaw_state_variable& v) {
-  check.kind(v.kind, ILAW_STATE_TANGENTIAL, "kind");
-  check.mask(v.flags, ILAW_VARIABLE_INTERNAL, "flags");
+  check.kind(v.kind, ILAW_KIND_TANGENTIAL, "kind");
+  check.mask(v.flags, ILAW_FLAG_INTERNAL, "flags");
   check.zero(v.reserved, "reserved");
   check.text(v.unit, "unit");
   check.prose(v.doc, "doc");
@@ -120,7 +120,7 @@ void check_spins(const checker& check, const ilaw_law& law) {
   if (has_spins && !(law.dimensions & ILAW_DIMENSION_3))
     check.refuse("delassus_forms has spins, expected dimension 3 among dimensions");
   for (std::uint32_t i = 0; i < law.parameter_count; ++i)
-    if (has(*law.parameters[i], ILAW_PARAMETER_NEEDS_SPINS) && !has_spins)
+    if (has(*law.parameters[i], ILAW_FLAG_NEEDS_SPINS) && !has_spins)
       check.refuse(quoted("parameter", law.parameters[i]->name) +
                    " needs spins, expected a form with spins among delassus_forms");
 }
@@ -151,12 +151,12 @@ void check_law(const checker& check, ilaw_law& law) {
 // Count of a variable of a kind whose count the dimension tells; the others have any.
 std::uint64_t expected_count(const ilaw_state_variable& v, std::uint32_t dimension) {
   switch (v.kind) {
-    case ILAW_STATE_SCALAR:
+    case ILAW_KIND_SCALAR:
       return 1;
-    case ILAW_STATE_VECTOR:
-    case ILAW_STATE_AXIS:
+    case ILAW_KIND_VECTOR:
+    case ILAW_KIND_AXIS:
       return dimension;
-    case ILAW_STATE_TANGENTIAL:
+    case ILAW_KIND_TANGENTIAL:
       return dimension - 1;
     default:
       return v.count;
@@ -184,7 +184,7 @@ void check_state(const checker& check, const ilaw_instance_info& info, std::uint
 std::set<std::string> given_per_node(const ilaw_setup& setup) {
   std::set<std::string> names;
   for (std::uint32_t k = 0; setup.arguments && k < setup.argument_count; ++k)
-    if (const ilaw_argument* a = setup.arguments[k]; a && a->name && a->kind == ILAW_VALUE_PER_NODE)
+    if (const ilaw_argument* a = setup.arguments[k]; a && a->name && a->kind == ILAW_KIND_VALUE_PER_NODE)
       names.insert(a->name);
   return names;
 }

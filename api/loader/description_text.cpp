@@ -25,7 +25,7 @@ constexpr names permission_names = {"skip_fresh", "skip_free"};
 constexpr names parameter_flag_names = {"is_required",     "excludes_minimum", "allows_infinity",
                                         "allows_per_node", "is_field",         "needs_spins"};
 constexpr names variable_flag_names = {"internal"};
-constexpr names parameter_kinds = {"number", "count", "choice"};
+constexpr names parameter_kinds = {"number", "integer", "choice"};
 constexpr names state_kinds = {"scalar", "vector", "history", "axis", "tangential"};
 
 void append(std::string& list, const std::string& element) { list += (list.empty() ? "" : ", ") + element; }
@@ -72,9 +72,8 @@ std::string objects(const Element* const* elements, std::uint32_t count,
 }
 
 std::string default_of(const ilaw_parameter& p) {
-  if ((p.flags & ILAW_PARAMETER_IS_REQUIRED) != 0) return "null";
-  if (p.kind == ILAW_PARAMETER_CHOICE)
-    return quoted_text(p.choices[static_cast<std::size_t>(p.default_value)]);
+  if ((p.flags & ILAW_FLAG_REQUIRED) != 0) return "null";
+  if (p.kind == ILAW_KIND_CHOICE) return quoted_text(p.choices[static_cast<std::size_t>(p.default_value)]);
   return number_text(p.default_value);
 }
 

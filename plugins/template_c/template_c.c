@@ -9,14 +9,13 @@ enum { TEMPERATURE, FRICTION, PARTITION };
 enum { HEAT, COUNTERPART_HEAT };
 
 static const char* const axes[] = {"slip_speed", "temperature", "time"};
-static const ilaw_parameter temperature = ILAW_PLAIN_PARAMETER(
-    "temperature", "T", "K", "Temperature of the body at the node.", .maximum = DBL_MAX,
-    .default_value = 293.15, .flags = ILAW_PARAMETER_IS_FIELD | ILAW_PARAMETER_ALLOWS_PER_NODE,
-    .axes = axes + 2, .axis_count = 1);
+static const ilaw_parameter temperature =
+    ILAW_PLAIN_PARAMETER("temperature", "T", "K", "Temperature of the body at the node.", .maximum = DBL_MAX,
+                         .default_value = 293.15, .flags = ILAW_FLAG_FIELD | ILAW_FLAG_ALLOWS_PER_NODE,
+                         .axes = axes + 2, .axis_count = 1);
 static const ilaw_parameter friction = ILAW_PLAIN_PARAMETER(
     "friction", "mu", "1", "Coefficient of friction; its axis slip_speed is the speed after the step.",
-    .maximum = 1e6, .flags = ILAW_PARAMETER_IS_REQUIRED | ILAW_PARAMETER_ALLOWS_PER_NODE, .axes = axes,
-    .axis_count = 3);
+    .maximum = 1e6, .flags = ILAW_FLAG_REQUIRED | ILAW_FLAG_ALLOWS_PER_NODE, .axes = axes, .axis_count = 3);
 static const ilaw_parameter partition =
     ILAW_PLAIN_PARAMETER("partition", "p", "1", "Part of the heat that flows into the body.", .maximum = 1.0,
                          .default_value = 0.5);

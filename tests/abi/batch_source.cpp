@@ -40,12 +40,12 @@ Array make_array(Draw& draw, Region<Number>& region, Number* Array::*values, std
 }
 
 double value(Draw& draw, const ilaw_parameter& p) {
-  if ((p.flags & ILAW_PARAMETER_ALLOWS_INFINITY) && draw.one_in(6)) return of_bits(0x7FF0000000000000);
-  const bool count = p.kind == ILAW_PARAMETER_COUNT;
+  if ((p.flags & ILAW_FLAG_ALLOWS_INFINITY) && draw.one_in(6)) return of_bits(0x7FF0000000000000);
+  const bool count = p.kind == ILAW_KIND_INTEGER;
   const double most = count ? 40.0 : 1e6;  // no state of thousands of doubles
   const double high = p.maximum < most ? p.maximum : most, low = p.minimum > -1e6 ? p.minimum : -1e6;
   if (draw.one_in(6)) return high;
-  if (draw.one_in(6) && !(p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM)) return low;
+  if (draw.one_in(6) && !(p.flags & ILAW_FLAG_EXCLUDES_MINIMUM)) return low;
   const double reach = draw.one_in(3) ? 1e4 : 2.0;
   const double drawn = low + (reach < high - low ? reach : high - low) * (1.0 - draw.unit());
   return count ? static_cast<double>(static_cast<std::int64_t>(drawn)) : drawn;
@@ -60,7 +60,7 @@ struct Table {
 };
 
 void give_table(Draw& draw, const ilaw_parameter& p, Table& table, ilaw_argument& a) {
-  a.kind = ILAW_VALUE_TABLE;
+  a.kind = ILAW_KIND_VALUE_TABLE;
   a.axis_count = 1 + static_cast<std::uint32_t>(draw.below(p.axis_count < 3 ? p.axis_count : 3));
   for (std::uint32_t k = 0; k < a.axis_count; ++k) {
     table.points[k] = {draw.unit(), 1.0 + draw.within(0.0, 400.0)};
@@ -76,11 +76,11 @@ ilaw_argument argument(Draw& draw, const ilaw_parameter& p, Table& table) {
   ilaw_argument a{};
   a.struct_size = sizeof a;
   a.name = p.name;
-  if (p.kind == ILAW_PARAMETER_CHOICE) {
-    a.kind = ILAW_VALUE_TEXT;
+  if (p.kind == ILAW_KIND_CHOICE) {
+    a.kind = ILAW_KIND_VALUE_TEXT;
     a.text = p.choices[draw.below(p.choice_count)];
-  } else if ((p.flags & ILAW_PARAMETER_ALLOWS_PER_NODE) && draw.one_in(4)) {
-    a.kind = ILAW_VALUE_PER_NODE;
+  } else if ((p.flags & ILAW_FLAG_ALLOWS_PER_NODE) && draw.one_in(4)) {
+    a.kind = ILAW_KIND_VALUE_PER_NODE;
   } else if (p.axis_count > 0 && draw.one_in(4)) {
     give_table(draw, p, table, a);
   } else {
@@ -104,7 +104,7 @@ std::optional<Drawn> Drawn::of(const ilaw::library& library, Draw& draw) {
   std::vector<ilaw_argument> arguments;
   std::vector<Table> tables(law.parameter_count);
   for (std::uint32_t p = 0; p < law.parameter_count; ++p)
-    if ((law.parameters[p]->flags & ILAW_PARAMETER_IS_REQUIRED) || draw.one_in(2))
+    if ((law.parameters[p]->flags & ILAW_FLAG_REQUIRED) || draw.one_in(2))
       arguments.push_back(argument(draw, *law.parameters[p], tables[p]));
   std::vector<const ilaw_argument*> pointers;
   for (const ilaw_argument& a : arguments) pointers.push_back(&a);

@@ -15,8 +15,6 @@ struct ilaw_pin {
 /* Members of the frozen header of a version, where they were; and where they are today. */
 const struct ilaw_pin* ilaw_pins_1_0_frozen(void);
 const struct ilaw_pin* ilaw_pins_1_0_today(void);
-const struct ilaw_pin* ilaw_pins_1_1_frozen(void);
-const struct ilaw_pin* ilaw_pins_1_1_today(void);
 #ifdef __cplusplus
 }
 #endif

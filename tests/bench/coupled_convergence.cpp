@@ -48,7 +48,7 @@ ilaw::interface friction_law(const Problem& problem, const ilaw::library& librar
                                          std::not_equal_to<>()) == problem.friction.end();
   ilaw_argument friction{};
   friction.struct_size = sizeof friction;
-  friction.kind = is_one ? ILAW_VALUE_NUMBER : ILAW_VALUE_PER_NODE;
+  friction.kind = is_one ? ILAW_KIND_VALUE_NUMBER : ILAW_KIND_VALUE_PER_NODE;
   friction.name = "friction";
   friction.number = problem.friction.front();
   const ilaw_argument* arguments[] = {&friction};

@@ -204,7 +204,7 @@ TEST(OtherWays, OfBreakingARuleAreSeenToo) {
       {"outputs-written: status", "the array status was not written"},
       {"step-limits: impulse", "impulse inf"},
       {"setup-unserved: spins", "create accepted dimension "},
-      {"call-refused: spins", "given a batch without spins, returned 0"},
+      {"call-refused: spins", "given spin_free null, returned 0"},
       {"array-numbers: spins", "given spin "},
       {"balance-inputs: spins", "without spin_previous, "},
       {"floats-rounded: moment", "in floats moment "},
@@ -308,12 +308,12 @@ TEST(Seeds, AreTriedByRulesOfMotion) {
 
 TEST(Parameters, ReplaceTheDrawnOnes) {
   Options options = only({"mirror"});
-  options.parameters = Values{{"damping", ILAW_VALUE_NUMBER, 0.75}};
+  options.parameters = Values{{"damping", ILAW_KIND_VALUE_NUMBER, 0.75}};
   const Checked checked = check_sample("mirror", options);
   ASSERT_EQ(broken(checked), Names{"mirror"});
   EXPECT_NE(checked.outcomes[0].finding.setting.find("; damping = 0.75"), std::string::npos)
       << checked.outcomes[0].finding.setting;
-  options.parameters = Values{{"damping", ILAW_VALUE_NUMBER, -1.0}};
+  options.parameters = Values{{"damping", ILAW_KIND_VALUE_NUMBER, -1.0}};
   EXPECT_THROW(check_sample("", options), UsageError);
 }
 

@@ -18,8 +18,8 @@ static ilaw_parameter damping = {.struct_size = sizeof(ilaw_parameter),
                                  .unit = "N.s/m^3",
                                  .doc = "Pressure over speed.",
                                  .maximum = UNBOUNDED,
-                                 .flags = ILAW_PARAMETER_IS_REQUIRED | ILAW_PARAMETER_EXCLUDES_MINIMUM |
-                                          ILAW_PARAMETER_ALLOWS_INFINITY | ILAW_PARAMETER_ALLOWS_PER_NODE,
+                                 .flags = ILAW_FLAG_REQUIRED | ILAW_FLAG_EXCLUDES_MINIMUM |
+                                          ILAW_FLAG_ALLOWS_INFINITY | ILAW_FLAG_ALLOWS_PER_NODE,
                                  .axes = axes,
                                  .axis_count = 1};
 static ilaw_parameter friction = {.struct_size = sizeof(ilaw_parameter),
@@ -38,9 +38,9 @@ static ilaw_parameter temperature = {.struct_size = sizeof(ilaw_parameter),
                                      .doc = "Of the body; friction may be a table over it.",
                                      .maximum = UNBOUNDED,
                                      .default_value = 293.15,
-                                     .flags = ILAW_PARAMETER_IS_FIELD | ILAW_PARAMETER_ALLOWS_PER_NODE};
+                                     .flags = ILAW_FLAG_FIELD | ILAW_FLAG_ALLOWS_PER_NODE};
 static ilaw_parameter wear = {.struct_size = sizeof(ilaw_parameter),
-                              .kind = ILAW_PARAMETER_COUNT,
+                              .kind = ILAW_KIND_INTEGER,
                               .name = "wear",
                               .symbol = "w",
                               .unit = "1",
@@ -49,7 +49,7 @@ static ilaw_parameter wear = {.struct_size = sizeof(ilaw_parameter),
                               .default_value = 1.0};
 static const char* const modes[] = {"smooth", "rough"};
 static ilaw_parameter mode = {.struct_size = sizeof(ilaw_parameter),
-                              .kind = ILAW_PARAMETER_CHOICE,
+                              .kind = ILAW_KIND_CHOICE,
                               .name = "mode",
                               .symbol = "",
                               .unit = "1",
@@ -64,10 +64,10 @@ static ilaw_parameter reach = {.struct_size = sizeof(ilaw_parameter),
                                .doc = "Largest moment over the normal force.",
                                .maximum = UNBOUNDED,
                                .default_value = 0.5,
-                               .flags = ILAW_PARAMETER_ALLOWS_INFINITY | ILAW_PARAMETER_NEEDS_SPINS};
+                               .flags = ILAW_FLAG_ALLOWS_INFINITY | ILAW_FLAG_NEEDS_SPINS};
 static const ilaw_parameter* const parameters[] = {&damping, &friction, &wear, &mode, &temperature, &reach};
 static const ilaw_state_variable closures = {
-    sizeof(ilaw_state_variable), ILAW_STATE_SCALAR, "closures", "1", "Steps that it was pushed.", 1, 0, 0};
+    sizeof(ilaw_state_variable), ILAW_KIND_SCALAR, "closures", "1", "Steps that it was pushed.", 1, 0, 0};
 static const ilaw_state_variable* const state_variables[] = {&closures};
 static ilaw_amount heat = {sizeof(ilaw_amount), 0, "heat", "J", "Half of what friction dissipates."};
 static const ilaw_amount worn = {sizeof(ilaw_amount), 0, "wear", "m", "A millionth of a meter per joule."};

@@ -38,15 +38,11 @@ struct ilaw_instance {
   const ilaw_state_variable* variables[1];
 };
 
-/* The arrays of spins of a batch. The law is compiled against the header of 1.0, too (tests/versions), which
- * has none. */
+/* The arrays of spins of a batch. */
 typedef struct spin_arrays {
   ilaw_input free, previous;
   ilaw_output moment, after;
 } spin_arrays;
-#ifdef SAMPLE_OF_1_0
-enum { ILAW_DELASSUS_TRANSVERSE_SPIN = 0, ILAW_PARAMETER_NEEDS_SPINS = 0 };
-#endif
 spin_arrays spins_of(const ilaw_batch* batch);
 
 /* Whether this is the rule to break. */

@@ -18,15 +18,15 @@ static ilaw_result refuse(char* message, size_t size, ilaw_result code, const ch
 
 /* As described. */
 static int is_allowed(const ilaw_parameter* p, double value) {
-  if (value == INFINITY) return (p->flags & ILAW_PARAMETER_ALLOWS_INFINITY) != 0;
+  if (value == INFINITY) return (p->flags & ILAW_FLAG_ALLOWS_INFINITY) != 0;
   return value <= p->maximum &&
-         (p->flags & ILAW_PARAMETER_EXCLUDES_MINIMUM ? value > p->minimum : value >= p->minimum);
+         (p->flags & ILAW_FLAG_EXCLUDES_MINIMUM ? value > p->minimum : value >= p->minimum);
 }
 
 static int in_range(const ilaw_parameter* p, double value) {
   if (isnan(value)) return breaks("parameter-nan");
   if (value == INFINITY && breaks("parameter-infinity")) return 1;
-  if (p->kind == ILAW_PARAMETER_COUNT && value != floor(value) && !breaks("parameter-whole")) return 0;
+  if (p->kind == ILAW_KIND_INTEGER && value != floor(value) && !breaks("parameter-whole")) return 0;
   if (breaks("parameter-accepted") && strcmp(p->name, "friction") == 0 && value == 0.0) return 0;
   if (breaks("parameter-range") && isfinite(value)) return 1;
   return is_allowed(p, value);
@@ -73,19 +73,18 @@ static ilaw_result read_table(quantity* to, const ilaw_parameter* p, const ilaw_
 
 static ilaw_result read_quantity(ilaw_instance* made, quantity* to, const ilaw_parameter* p,
                                  const ilaw_argument* a) {
-  const int is_refused = breaks("field-per-node") && (p->flags & ILAW_PARAMETER_IS_FIELD);
-  if (a->kind == ILAW_VALUE_NUMBER && in_range(p, a->number)) {
+  const int is_refused = breaks("field-per-node") && (p->flags & ILAW_FLAG_FIELD);
+  if (a->kind == ILAW_KIND_VALUE_NUMBER && in_range(p, a->number)) {
     to->constant = a->number;
     return ILAW_OK;
   }
-  if (a->kind == ILAW_VALUE_PER_NODE && (p->flags & ILAW_PARAMETER_ALLOWS_PER_NODE) && !is_refused) {
+  if (a->kind == ILAW_KIND_VALUE_PER_NODE && (p->flags & ILAW_FLAG_ALLOWS_PER_NODE) && !is_refused) {
     made->per_node[made->per_node_count++] = p->name;
     to->slot = made->per_node_count;
     return ILAW_OK;
   }
-  if (a->kind == ILAW_VALUE_TABLE && p->axis_count > 0) return read_table(to, p, a);
-  return breaks("parameter-varying") && a->kind == ILAW_VALUE_PER_NODE &&
-                 !(p->flags & ILAW_PARAMETER_IS_FIELD)
+  if (a->kind == ILAW_KIND_VALUE_TABLE && p->axis_count > 0) return read_table(to, p, a);
+  return breaks("parameter-varying") && a->kind == ILAW_KIND_VALUE_PER_NODE && !(p->flags & ILAW_FLAG_FIELD)
              ? ILAW_OK
              : ILAW_INVALID_PARAMETER;
 }
@@ -108,7 +107,7 @@ static ilaw_result read_argument(ilaw_instance* made, const ilaw_argument* a) {
     *(strcmp(a->name, "wear") == 0 ? &made->wear : &made->reach) = count.constant;
     return code;
   }
-  if (a->kind != ILAW_VALUE_TEXT || !a->text) return ILAW_INVALID_PARAMETER;
+  if (a->kind != ILAW_KIND_VALUE_TEXT || !a->text) return ILAW_INVALID_PARAMETER;
   made->mode = a->text;
   made->rough = strcmp(a->text, "rough") == 0;
   return made->rough || strcmp(a->text, "smooth") == 0 || breaks("parameter-choice") ? ILAW_OK
@@ -136,7 +135,7 @@ static int serves(const ilaw_setup* setup) {
 static void describe_state(ilaw_instance* made) {
   ilaw_state_variable* v = &made->variable;
   v->struct_size = sizeof *v;
-  v->kind = ILAW_STATE_SCALAR;
+  v->kind = ILAW_KIND_SCALAR;
   v->name = breaks("state-described") ? "openings" : "closures";
   v->unit = "1";
   v->doc = "";

@@ -52,8 +52,7 @@ static int needs_previous(const ilaw_batch* b) {
 static int lacks_spins(const ilaw_instance* made, const ilaw_batch* b) {
   const spin_arrays a = spins_of(b);
   if (made->setup.delassus_form != ILAW_DELASSUS_TRANSVERSE_SPIN) return 0;
-  if (b->struct_size < sizeof *b) return !breaks("call-refused: spins");
-  return lacks(made, a.free.values, a.free.floats, 1) ||
+  return lacks(made, a.free.values, a.free.floats, !breaks("call-refused: spins")) ||
          lacks(made, a.previous.values, a.previous.floats,
                needs_previous(b) && !breaks("balance-inputs: spins")) ||
          lacks(made, a.moment.values, a.moment.floats, 1) ||

@@ -86,14 +86,8 @@ static double sum_of(const ilaw_input* from, const ilaw_batch* b, int width) {
 spin_arrays spins_of(const ilaw_batch* batch) {
   spin_arrays spins;
   memset(&spins, 0, sizeof spins);
-#ifdef SAMPLE_OF_1_0
-  (void)batch;
-#else
-  if (batch->struct_size < sizeof *batch && !breaks("call-refused: spins"))
-    return spins; /* of a host of 1.0 */
   spins.free = batch->spin_free, spins.previous = batch->spin_previous;
   spins.moment = batch->moment, spins.after = batch->spin;
-#endif
   return spins;
 }
 

@@ -258,18 +258,18 @@ TEST(RandomParameters, AreWithinTheLimitsOfTheLaw) {
       std::set<json> drawn;
       for (int k = 0; k < 200; ++k) {
         const json parameters = random_parameters(*entry.law, 1e-3, draw);
-        ASSERT_TRUE(parameters.contains(p.name) || !(p.flags & ILAW_PARAMETER_IS_REQUIRED))
+        ASSERT_TRUE(parameters.contains(p.name) || !(p.flags & ILAW_FLAG_REQUIRED))
             << entry.law->id << " " << p.name;
         if (!parameters.contains(p.name)) continue;
         const json& value = parameters[p.name];
         drawn.insert(value);
         if (!value.is_number()) continue;
         const double number = value.get<double>();
-        ASSERT_TRUE((p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM) ? number > p.minimum : number >= p.minimum)
+        ASSERT_TRUE((p.flags & ILAW_FLAG_EXCLUDES_MINIMUM) ? number > p.minimum : number >= p.minimum)
             << entry.law->id << " " << p.name << " " << number;
         ASSERT_LE(number, p.maximum) << entry.law->id << " " << p.name;
       }
-      EXPECT_GE(drawn.size(), p.kind == ILAW_PARAMETER_CHOICE ? p.choice_count : 10U)
+      EXPECT_GE(drawn.size(), p.kind == ILAW_KIND_CHOICE ? p.choice_count : 10U)
           << entry.law->id << " " << p.name;
     }
 }

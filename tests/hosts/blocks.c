@@ -50,7 +50,7 @@ static ilaw_interface* create_interface(const char* library_name) {
 
   const ilaw_argument friction = {.struct_size = sizeof friction, .name = "friction", .number = 0.3};
   const ilaw_argument activation = {
-      .struct_size = sizeof activation, .kind = ILAW_VALUE_TEXT, .name = "activation", .text = "moreau"};
+      .struct_size = sizeof activation, .kind = ILAW_KIND_VALUE_TEXT, .name = "activation", .text = "moreau"};
   const ilaw_argument* const arguments[] = {&friction, &activation};
   const ilaw_setup setup = {.struct_size = sizeof setup,
                             .dimension = 3,

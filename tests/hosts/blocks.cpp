@@ -49,7 +49,7 @@ ilaw::interface create_interface(const char* library_name) {
   friction.name = "friction";
   friction.number = 0.3;
   activation.name = "activation";
-  activation.kind = ILAW_VALUE_TEXT;
+  activation.kind = ILAW_KIND_VALUE_TEXT;
   activation.text = "moreau";
   const std::array<const ilaw_argument*, 2> arguments{&friction, &activation};
   ilaw_setup setup{};

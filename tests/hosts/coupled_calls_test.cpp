@@ -58,8 +58,6 @@ TEST(Coupled, SaysWhatIsWrongWithSpins) {
   scene.arm[1] -= 1e-3;
   expect_refused(scene, 0,
                  {{"delassus_form has spins, and moment is missing", [](Call& c) { c.batch.moment = {}; }},
-                  {"delassus_form has spins, and moment is missing",
-                   [](Call& c) { c.batch.struct_size = ILAW_BATCH_SIZE_1_0; }},
                   {"moment has a stride of 0", [](Call& c) { c.batch.moment.node_stride = 0; }},
                   {"delassus_form has spins; expected one body on either side, without weights",
                    [](Call& c) { c.contacts.body_weight = ilaw::input(six, 0, 0); }},

@@ -106,7 +106,7 @@ struct Assembly {
 
   ilaw::interface law;
   bool rotate;
-  ilaw_delassus_forms form;
+  ilaw_delassus_form form;
   double speed = 0.0;
   std::size_t count = 0;
   std::uint32_t body_count = 1, counterpart_count = 1, weight_size = 1;

@@ -15,7 +15,7 @@ namespace {
 
 using coupled_scene::h;
 
-ilaw::interface resolved(const char* law, ilaw_delassus_forms form, ilaw::testing::Parameters parameters) {
+ilaw::interface resolved(const char* law, ilaw_delassus_form form, ilaw::testing::Parameters parameters) {
   parameters.texts["activation"] = "resolved";
   return ilaw::testing::make_law(law, ilaw::testing::SetupBuilder(parameters, 3, form, ILAW_FRAME_GLOBAL));
 }

@@ -18,9 +18,9 @@ struct Arguments {
   Arguments(const ilaw_law& law, const char* choice_of, const char* choice, bool all_numbers) {
     for (std::uint32_t k = 0; k < law.parameter_count; ++k) {
       const ilaw_parameter& p = *law.parameters[k];
-      if (p.kind == ILAW_PARAMETER_CHOICE && choice_of == p.name) add(p, ILAW_VALUE_TEXT).text = choice;
-      if (p.kind != ILAW_PARAMETER_CHOICE && ((p.flags & ILAW_PARAMETER_IS_REQUIRED) || all_numbers))
-        add(p, ILAW_VALUE_NUMBER).number =
+      if (p.kind == ILAW_KIND_CHOICE && choice_of == p.name) add(p, ILAW_KIND_VALUE_TEXT).text = choice;
+      if (p.kind != ILAW_KIND_CHOICE && ((p.flags & ILAW_FLAG_REQUIRED) || all_numbers))
+        add(p, ILAW_KIND_VALUE_NUMBER).number =
             p.maximum < 1e6 ? 0.25 * p.maximum + 0.75 * p.minimum : p.minimum + 2.0;
     }
     for (ilaw_argument& a : arguments) pointers.push_back(&a);
@@ -31,7 +31,7 @@ struct Arguments {
     a.struct_size = sizeof a;
     a.kind = kind;
     a.name = p.name;
-    if (p.kind == ILAW_PARAMETER_COUNT) a.number = p.minimum;
+    if (p.kind == ILAW_KIND_INTEGER) a.number = p.minimum;
     return a;
   }
   std::deque<ilaw_argument> arguments;

@@ -93,10 +93,10 @@ bool swap_roles(const ilaw_instance_info& info, int dimension, std::vector<doubl
   std::size_t at = 0;
   for (std::uint32_t i = 0; i < info.state_variable_count; ++i) {
     const ilaw_state_variable& v = *info.state_variables[i];
-    if (v.kind == ILAW_STATE_HISTORY) return false;
-    if (v.kind == ILAW_STATE_AXIS)
+    if (v.kind == ILAW_KIND_HISTORY) return false;
+    if (v.kind == ILAW_KIND_AXIS)
       for (std::size_t c = 0; c < 3; ++c) state[at + c] = -state[at + c];
-    if (v.kind == ILAW_STATE_VECTOR || v.kind == ILAW_STATE_TANGENTIAL)
+    if (v.kind == ILAW_KIND_VECTOR || v.kind == ILAW_KIND_TANGENTIAL)
       state[at + v.count - 1] = -state[at + v.count - 1];
     at += v.count;
   }

@@ -94,9 +94,9 @@ TEST(StateVariables, SayWhichAreInternal) {
   const std::map<std::string, std::uint32_t> expected = {{"count", 0},
                                                          {"sum", 0},
                                                          {"slip", 0},
-                                                         {"last", ILAW_VARIABLE_INTERNAL},
-                                                         {"frame_normal", ILAW_VARIABLE_INTERNAL},
-                                                         {"frame_tangent", ILAW_VARIABLE_INTERNAL}};
+                                                         {"last", ILAW_FLAG_INTERNAL},
+                                                         {"frame_normal", ILAW_FLAG_INTERNAL},
+                                                         {"frame_tangent", ILAW_FLAG_INTERNAL}};
   ASSERT_EQ(info.state_variable_count, expected.size());
   for (std::uint32_t k = 0; k < info.state_variable_count; ++k)
     EXPECT_EQ(info.state_variables[k]->flags, expected.at(info.state_variables[k]->name))
@@ -109,7 +109,7 @@ TEST(StateVariables, HaveTheSizeOfTheirKind) {
     const ilaw::interface law = make_tested_law("kit_probe", SetupBuilder(probe_parameters, d));
     EXPECT_EQ(law.info().state_size, 1 + d + (d - 1) + 2) << d;
     for (std::uint32_t k = 0; k < law.info().state_variable_count; ++k) {
-      if (law.info().state_variables[k]->kind == ILAW_STATE_TANGENTIAL) {
+      if (law.info().state_variables[k]->kind == ILAW_KIND_TANGENTIAL) {
         EXPECT_EQ(law.info().state_variables[k]->count, d - 1) << "d " << d << ", k " << k;
       }
     }

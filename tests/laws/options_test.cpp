@@ -31,9 +31,9 @@ class OptionsOf : public ::testing::TestWithParam<LawCase> {
     std::vector<const ilaw_parameter*> found;
     const ilaw_law& description = *library.law(law.law);
     for (std::uint32_t k = 0; k < description.parameter_count; ++k)
-      if ((kind == ILAW_VALUE_TABLE
+      if ((kind == ILAW_KIND_VALUE_TABLE
                ? description.parameters[k]->axis_count > 0
-               : (description.parameters[k]->flags & ILAW_PARAMETER_ALLOWS_PER_NODE) != 0) &&
+               : (description.parameters[k]->flags & ILAW_FLAG_ALLOWS_PER_NODE) != 0) &&
           law.parameters.numbers.contains(description.parameters[k]->name))
         found.push_back(description.parameters[k]);
     return found;
@@ -62,12 +62,12 @@ class OptionsOf : public ::testing::TestWithParam<LawCase> {
 };
 
 TEST_P(OptionsOf, AConstantGivenPerNodeGivesTheSameBits) {
-  expect_no_change(ILAW_VALUE_PER_NODE,
+  expect_no_change(ILAW_KIND_VALUE_PER_NODE,
                    [](Parameters& parameters, const char* name, double) { parameters.per_node = {name}; });
 }
 
 TEST_P(OptionsOf, AConstantTableGivesTheSameBits) {
-  expect_no_change(ILAW_VALUE_TABLE, [](Parameters& parameters, const char* name, double value) {
+  expect_no_change(ILAW_KIND_VALUE_TABLE, [](Parameters& parameters, const char* name, double value) {
     parameters.tables[name] = {0.0, value, 3.5 * RandomNodes::step, value, 1.0, value};
   });
 }
@@ -75,7 +75,7 @@ TEST_P(OptionsOf, AConstantTableGivesTheSameBits) {
 // Each node has the value of its own array entry, whatever the others have: as in a batch where it is the
 // constant.
 TEST_P(OptionsOf, EachNodeHasItsOwnValue) {
-  for (const ilaw_parameter* parameter : numbers(ILAW_VALUE_PER_NODE)) {
+  for (const ilaw_parameter* parameter : numbers(ILAW_KIND_VALUE_PER_NODE)) {
     Parameters parameters = law.parameters;
     const double value = parameters.numbers.at(parameter->name),
                  other = std::min(1.1 * value, parameter->maximum);
@@ -99,7 +99,7 @@ TEST_P(OptionsOf, EachNodeHasItsOwnValue) {
 
 // A value that may not be, at one node in three, is bad input there and nowhere else.
 TEST_P(OptionsOf, BadValuesAreBadInputAtTheirNodesOnly) {
-  for (const ilaw_parameter* parameter : numbers(ILAW_VALUE_PER_NODE))
+  for (const ilaw_parameter* parameter : numbers(ILAW_KIND_VALUE_PER_NODE))
     for (const double bad :
          {std::nan(""), parameter->minimum - 1.0, -std::numeric_limits<double>::infinity()}) {
       Parameters parameters = law.parameters;
@@ -147,7 +147,7 @@ TEST(Options, ValuesThatDoNotGoTogetherAreRefusedAtTheirNodes) {
 
 // Half way between two instants of a table the value is half way, and outside its ends it is theirs.
 TEST_P(OptionsOf, TablesArePiecewiseLinearInTime) {
-  for (const ilaw_parameter* parameter : numbers(ILAW_VALUE_TABLE)) {
+  for (const ilaw_parameter* parameter : numbers(ILAW_KIND_VALUE_TABLE)) {
     const double value = law.parameters.numbers.at(parameter->name);
     const double from = std::min(0.75 * value, parameter->maximum), to = 1.25 * value - 0.25 * from;
     Parameters parameters = law.parameters, midway = law.parameters;

@@ -20,23 +20,23 @@ TEST(Parameters, GiveNumbersTextsTablesAndPerNode) {
   ASSERT_EQ(setup.argument_count, 4U);
   for (std::uint32_t i = 0; i < 4; ++i) EXPECT_EQ(setup.arguments[i]->struct_size, sizeof(ilaw_argument));
   const ilaw_argument& number = *setup.arguments[0];
-  EXPECT_EQ(number.kind, ilaw_kind{ILAW_VALUE_NUMBER});
+  EXPECT_EQ(number.kind, ilaw_kind{ILAW_KIND_VALUE_NUMBER});
   EXPECT_STREQ(number.name, "friction");
   EXPECT_EQ(number.number, 0.3);
   EXPECT_EQ(number.text, nullptr);
   EXPECT_EQ(number.values, nullptr);
   EXPECT_EQ(number.axes, nullptr);
-  EXPECT_EQ(setup.arguments[1]->kind, ilaw_kind{ILAW_VALUE_TEXT});
+  EXPECT_EQ(setup.arguments[1]->kind, ilaw_kind{ILAW_KIND_VALUE_TEXT});
   EXPECT_STREQ(setup.arguments[1]->text, "rough");
   const ilaw_argument& table = *setup.arguments[2];
-  EXPECT_EQ(table.kind, ilaw_kind{ILAW_VALUE_TABLE});
+  EXPECT_EQ(table.kind, ilaw_kind{ILAW_KIND_VALUE_TABLE});
   ASSERT_EQ(table.axis_count, 2U);
   EXPECT_EQ(table.axes[0]->struct_size, sizeof(ilaw_axis));
   EXPECT_STREQ(table.axes[1]->name, "temperature");
   ASSERT_EQ(table.axes[1]->count, 3U);
   EXPECT_EQ(table.axes[1]->points[2], 4.0);
   EXPECT_EQ(table.values[5], 6.0);
-  EXPECT_EQ(setup.arguments[3]->kind, ilaw_kind{ILAW_VALUE_PER_NODE});
+  EXPECT_EQ(setup.arguments[3]->kind, ilaw_kind{ILAW_KIND_VALUE_PER_NODE});
   EXPECT_STREQ(setup.arguments[3]->name, "temperature");
 }
 

@@ -157,7 +157,7 @@ TEST_F(DescriptionFile, MustSayWhatTheLibrarySays) {
 TEST_F(DescriptionFile, MayTellMoreOfANewerLibrary) {
   take("newer_minor");
   EXPECT_EQ(describe(), 1);
-  EXPECT_THAT(said(), HasSubstr("ABI 1.5, expected at most 1.1: use a newer ilaw-describe"));
+  EXPECT_THAT(said(), HasSubstr("ABI 1.5, expected at most 1.0: use a newer ilaw-describe"));
   json newer = json::parse(ilaw::library(library()).describe());
   newer["laws"][0]["spins"] = true;
   newer["laws"][0]["dimensions"].push_back("4");

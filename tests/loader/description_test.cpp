@@ -41,17 +41,17 @@ struct Description {
 
   Description() {
     number.struct_size = choice.struct_size = sizeof number;
-    number.kind = ILAW_PARAMETER_NUMBER;
+    number.kind = ILAW_KIND_NUMBER;
     number.name = "strength";
     number.symbol = "s";
     number.unit = "Pa";
     number.doc = "Of the bond.\n";
     number.maximum = 1.0;
     number.default_value = 0.5;
-    number.flags = ILAW_PARAMETER_ALLOWS_PER_NODE | ILAW_PARAMETER_IS_FIELD;
+    number.flags = ILAW_FLAG_ALLOWS_PER_NODE | ILAW_FLAG_FIELD;
     number.axes = axes.data();
     number.axis_count = 2;
-    choice.kind = ILAW_PARAMETER_CHOICE;
+    choice.kind = ILAW_KIND_CHOICE;
     choice.name = "surface";
     choice.symbol = "";
     choice.unit = "1";
@@ -59,7 +59,7 @@ struct Description {
     choice.maximum = choice.default_value = 1.0;
     choice.choices = choices.data();
     choice.choice_count = 2;
-    variable = {sizeof variable, ILAW_STATE_SCALAR, "damage", "1", "Of the bond.", 1, 0, 0};
+    variable = {sizeof variable, ILAW_KIND_SCALAR, "damage", "1", "Of the bond.", 1, 0, 0};
     law.struct_size = sizeof law;
     law.dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_3;
     law.delassus_forms = ILAW_DELASSUS_SCALAR;
@@ -142,7 +142,7 @@ const Fault faulty_descriptions[] = {
        d.law.dimensions = ILAW_DIMENSION_2;
      },
      "law 'bond': delassus_forms has spins, expected dimension 3 among dimensions"},
-    {"ParameterWithoutSpins", [](Description& d) { d.number.flags |= ILAW_PARAMETER_NEEDS_SPINS; },
+    {"ParameterWithoutSpins", [](Description& d) { d.number.flags |= ILAW_FLAG_NEEDS_SPINS; },
      "law 'bond': parameter 'strength' needs spins, expected a form with spins among delassus_forms"},
     {"NoFrame", [](Description& d) { d.law.frames = 0; },
      "law 'bond': frames is 0, expected at least one of the bits of 3"},
@@ -229,7 +229,7 @@ const Fault faulty_descriptions[] = {
      "law 'bond': parameter 'strength': minimum 0.000000 is not below maximum nan"},
     {"DefaultAtAnExcludedMinimum",
      [](Description& d) {
-       d.number.flags |= ILAW_PARAMETER_EXCLUDES_MINIMUM;
+       d.number.flags |= ILAW_FLAG_EXCLUDES_MINIMUM;
        d.number.default_value = 0.0;
      },
      "law 'bond': parameter 'strength': default 0.000000 lies outside its own range"},
@@ -240,13 +240,13 @@ const Fault faulty_descriptions[] = {
     {"DefaultInfiniteWhereAllowed",
      [](Description& d) {
        d.number.default_value = infinity;
-       d.number.flags |= ILAW_PARAMETER_ALLOWS_INFINITY;
+       d.number.flags |= ILAW_FLAG_ALLOWS_INFINITY;
      },
      ""},
     {"NoDefaultWhereRequired",
      [](Description& d) {
        d.number.default_value = d.choice.default_value = NAN;
-       d.number.flags = d.choice.flags = ILAW_PARAMETER_IS_REQUIRED;
+       d.number.flags = d.choice.flags = ILAW_FLAG_REQUIRED;
      },
      ""},
     {"NoChoices", [](Description& d) { d.choice.choice_count = 0; },
@@ -269,13 +269,14 @@ INSTANTIATE_TEST_SUITE_P(Library, FaultyDescription, ::testing::ValuesIn(faulty_
 // As create is asked for it: one parameter per node, one not.
 struct Instance {
   ilaw_argument per_node{
-      sizeof per_node, ILAW_VALUE_PER_NODE, "strength", 0.0, nullptr, nullptr, nullptr, 0, 0};
-  ilaw_argument plain{sizeof plain, ILAW_VALUE_NUMBER, "delay", 0.0, nullptr, nullptr, nullptr, 0, 0};
-  ilaw_argument nameless{sizeof nameless, ILAW_VALUE_PER_NODE, nullptr, 0.0, nullptr, nullptr, nullptr, 0, 0};
+      sizeof per_node, ILAW_KIND_VALUE_PER_NODE, "strength", 0.0, nullptr, nullptr, nullptr, 0, 0};
+  ilaw_argument plain{sizeof plain, ILAW_KIND_VALUE_NUMBER, "delay", 0.0, nullptr, nullptr, nullptr, 0, 0};
+  ilaw_argument nameless{
+      sizeof nameless, ILAW_KIND_VALUE_PER_NODE, nullptr, 0.0, nullptr, nullptr, nullptr, 0, 0};
   std::array<const ilaw_argument*, 4> arguments{&per_node, nullptr, &nameless, &plain};
   std::array<const char*, 2> names{"strength", "strength"};
-  ilaw_state_variable first{sizeof first, ILAW_STATE_VECTOR, "first", "m", "", 3, 0, 0};
-  ilaw_state_variable second{sizeof second, ILAW_STATE_TANGENTIAL, "second", "m", "", 2, 0, 0};
+  ilaw_state_variable first{sizeof first, ILAW_KIND_VECTOR, "first", "m", "", 3, 0, 0};
+  ilaw_state_variable second{sizeof second, ILAW_KIND_TANGENTIAL, "second", "m", "", 2, 0, 0};
   std::array<const ilaw_state_variable*, 2> variables{&first, &second};
   ilaw_amount heat{sizeof heat, 0, "heat", "J", ""}, wear{sizeof wear, 0, "wear", "m", ""};
   std::array<const ilaw_amount*, 2> amounts{&heat, &wear}, given{&wear, &wear};
@@ -328,13 +329,13 @@ TEST(FaultyInstance, IsNamedWithWhatWasFoundAndExpected) {
   EXPECT_EQ(said_of([](Instance&) {}), "");
   EXPECT_EQ(said_of([](Instance& i) { i.setup.dimension = 2; }),
             at + "state variable 'first': count is 3, expected 2");
-  EXPECT_EQ(said_of([](Instance& i) { i.first.kind = ILAW_STATE_AXIS; }), "");
+  EXPECT_EQ(said_of([](Instance& i) { i.first.kind = ILAW_KIND_AXIS; }), "");
   EXPECT_EQ(said_of([](Instance& i) { i.second.count = 3; }),
             at + "state variable 'second': count is 3, expected 2");
   EXPECT_EQ(said_of([](Instance& i) { i.info.state_size = 6; }),
             at + "state_size is 6, expected the sum of the counts, 5, and at most 1048576");
   EXPECT_EQ(said_of([](Instance& i) {
-              i.first.kind = i.second.kind = ILAW_STATE_HISTORY;
+              i.first.kind = i.second.kind = ILAW_KIND_HISTORY;
               i.first.count = i.second.count = 1 << 20;
               i.info.state_size = 2 << 20;
             }),

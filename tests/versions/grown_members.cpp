@@ -28,7 +28,7 @@ void check_instance(const ilaw::library& library, const ilaw_law& law) {
   setup.numbers = ILAW_NUMBERS_DOUBLE;
   std::vector<ilaw_argument> arguments;
   for (std::uint32_t p = 0; p < law.parameter_count; ++p)
-    if (law.parameters[p]->flags & ILAW_PARAMETER_IS_REQUIRED) {
+    if (law.parameters[p]->flags & ILAW_FLAG_REQUIRED) {
       ilaw_argument& a = arguments.emplace_back();
       a.struct_size = sizeof a;
       a.name = law.parameters[p]->name;

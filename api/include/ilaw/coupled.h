@@ -54,17 +54,17 @@ typedef struct ilaw_bodies {
  * and its impulse r acts at body i with w_i r. */
 typedef struct ilaw_contacts {
   uint32_t struct_size;
-  ilaw_delassus_forms delassus_form; /* the instance was created with: ILAW_DELASSUS_SCALAR where nothing
+  ilaw_delassus_form delassus_form; /* the instance was created with: ILAW_DELASSUS_SCALAR where nothing
                                     rotates, ILAW_DELASSUS_TRANSVERSE for spheres with arms along the normal,
-                                    ILAW_DELASSUS_TRANSVERSE_SPIN for the same with moments (1.1; one body on
+                                    ILAW_DELASSUS_TRANSVERSE_SPIN for the same with moments (one body on
                                     either side, no weights), else ILAW_DELASSUS_FULL */
-  const ilaw_law* law;           /* ilaw_interface_law, ilaw_interface_instance of an interface that was */
-  const ilaw_instance* instance; /* created for ILAW_FRAME_GLOBAL and ILAW_NUMBERS_DOUBLE */
-  /* As for evaluate, but without v_free, delassus, v_previous, velocity, spin_free, spin_previous, spin and
-   * lists of nodes: contacts 0 to node_count - 1. impulse is read, too, and moment where the form has spins:
-   * the iterations begin with them. Leave there what the last step left (times the new step over the old
-   * one, where it changes), and zero at contacts that are new. The moment acts at the body, its opposite at
-   * the counterpart. */
+  const ilaw_law* law;              /* ilaw_interface_law, ilaw_interface_instance of an interface that was */
+  const ilaw_instance* instance;    /* created for ILAW_FRAME_GLOBAL and ILAW_NUMBERS_DOUBLE */
+  /* As for evaluate, but without v_free, v_smooth, delassus, v_previous, velocity, spin_free, spin_previous,
+   * spin and lists of nodes: contacts 0 to node_count - 1. impulse is read, too, and moment where the form
+   * has spins: the iterations begin with them. Leave there what the last step left (times the new step over
+   * the old one, where it changes), and zero at contacts that are new. The moment acts at the body, its
+   * opposite at the counterpart. */
   const ilaw_batch* batch;
   const int32_t* body;        /* per contact the body into which the normal points, from index_base of the
                                  batch on; with body_count b, b entries per contact */
@@ -74,6 +74,9 @@ typedef struct ilaw_contacts {
   ilaw_input wall_velocity;   /* d, optional: subtracted from the velocity of the contact, its mean over the
                                  step: of a wall; between bodies, of a belt or an imposed slip */
   ilaw_input wall_previous;   /* d, optional: the same of the step before; absent: as wall_velocity */
+  ilaw_input wall_spin; /* 3, optional, read where the form has spins: subtracted from the relative spin of
+                           the contact, which is the body's less the counterpart's, as wall_velocity is */
+  ilaw_input wall_spin_previous; /* 3, optional: of the step before; absent: as wall_spin */
   uint32_t body_count; /* entries of body per contact; 0: 1. Entries below index_base are empty, but the
                           first of body is not */
   uint32_t counterpart_count; /* the same of counterpart */
@@ -83,10 +86,7 @@ typedef struct ilaw_contacts {
   ilaw_input body_weight;
   ilaw_input counterpart_weight;
   uint32_t weight_size;
-  uint32_t reserved;    /* 0 */
-  ilaw_input wall_spin; /* 3, optional (1.1), read where the form has spins: subtracted from the relative spin
-                           of the contact, which is the body's less the counterpart's, as wall_velocity is */
-  ilaw_input wall_spin_previous; /* 3, optional (1.1): of the step before; absent: as wall_spin */
+  uint32_t reserved; /* 0 */
 } ilaw_contacts;
 
 /* Callbacks of the host, in exchange. */
@@ -195,7 +195,7 @@ ilaw_result ILAW_CALL ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies
 #define ILAW_BODIES_SIZE_1_0 ILAW_SIZE_TO(ilaw_bodies, angular_impulse)
 #define ILAW_CONTACTS_SIZE_1_0 ILAW_SIZE_TO(ilaw_contacts, reserved)
 #define ILAW_EXCHANGE_SIZE_1_0 ILAW_SIZE_TO(ilaw_exchange, sum)
-#define ILAW_COUPLED_OPTIONS_SIZE_1_0 ILAW_SIZE_TO(ilaw_coupled_options, rounding)
+#define ILAW_COUPLED_OPTIONS_SIZE_1_0 ILAW_SIZE_TO(ilaw_coupled_options, reserved)
 #define ILAW_COUPLED_REPORT_SIZE_1_0 ILAW_SIZE_TO(ilaw_coupled_report, message)
 
 #if defined(ILAW_BUILDING_SHARED_COUPLED)

@@ -13,7 +13,7 @@
 namespace ilaw {
 
 // The contacts of one law, whose interface was made for the global frame and this form of H.
-inline ilaw_contacts contacts_of(const interface& law, ilaw_delassus_forms form, const ilaw_batch& batch,
+inline ilaw_contacts contacts_of(const interface& law, ilaw_delassus_form form, const ilaw_batch& batch,
                                  const std::int32_t* body, const std::int32_t* counterpart) {
   ilaw_contacts made{};
   made.struct_size = sizeof made;

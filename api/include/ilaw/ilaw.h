@@ -1,11 +1,9 @@
-/* ilaw.h - the interface-law ABI, version 1.1.
- *
+/* ilaw.h - the interface-law ABI, version 1.0.
  * An interface law answers one question per interface node of an explicit dynamics code: given the
  * velocity v_free that the node would have without interface, and the local inverse mass H (the
  * Delassus operator), which impulse r does the interface exert?
  *
  *     v = v_free + H r ,     R(v, r; gap, state) = 0
- *
  * A law library (plugin) exports the one symbol ILAW_ENTRY_NAME. It gives a constant description of the
  * library and of its laws; each law has five functions (create, destroy, info, initialise, evaluate).
  *
@@ -19,6 +17,7 @@
  *  - No function throws, prints, exits or raises a signal. evaluate and initialise leave the floating-point
  *    environment (exception flags, trap masks, rounding mode, flush-to-zero) as they found it, and give the
  *    same bits whatever it is.
+ *  - create, initialise and evaluate need at most ILAW_STACK_SIZE bytes of stack.
  *  - Threads: each function says from where it may be called. [any-thread]: from any thread, at the same time
  *    as any other call. [exclusive]: from any thread, while no other call works on the same instance.
  *
@@ -30,11 +29,9 @@
  *    balance_inputs of an instance, and the host refuses. All other bits of a library are information.
  *  - Pointers to arrays of structs are arrays of pointers, since a struct may grow.
  *  - New functions are extensions, asked for by name: ilaw/ext/, drafts in ilaw/ext/draft/.
- *
  * Pure C99, clean as C++17, needs nothing but <stdint.h> and <stddef.h>.
  * Formulation: Moreau (1988), Unilateral contact and dry friction in finite freedom dynamics; Fekak, Brun,
  * Gravouil, Depale (2017), heterogeneous asynchronous time integrator for nonsmooth dynamics (CD-Lagrange).
- *
  * SPDX-License-Identifier: BSD-3-Clause
  */
 #ifndef ILAW_ILAW_H
@@ -47,7 +44,7 @@
 extern "C" {
 #endif
 
-enum { ILAW_ABI_MAJOR = 1, ILAW_ABI_MINOR = 1 };
+enum { ILAW_ABI_MAJOR = 1, ILAW_ABI_MINOR = 0, ILAW_STACK_SIZE = 1 << 16 };
 /* The major version is part of the name: a library for ABI 2 is not found by a host of ABI 1. */
 #define ILAW_ENTRY ilaw_plugin_v1
 #define ILAW_ENTRY_NAME "ilaw_plugin_v1"
@@ -70,19 +67,20 @@ enum { ILAW_ABI_MAJOR = 1, ILAW_ABI_MINOR = 1 };
 /* Types of results, statuses, kinds (one of an enumeration) and masks (any of its bits). */
 typedef int32_t ilaw_result;           /* ILAW_OK ... */
 typedef uint8_t ilaw_status;           /* ILAW_FREE ... */
-typedef uint32_t ilaw_kind;            /* of a parameter, a value or a state variable */
+typedef uint32_t ilaw_kind;            /* one of ILAW_KIND_*: of a parameter, a value, a state variable */
 typedef uint32_t ilaw_dimensions;      /* mask of ILAW_DIMENSION_* */
-typedef uint32_t ilaw_delassus_forms;  /* mask of ILAW_DELASSUS_* */
-typedef uint32_t ilaw_frames;          /* mask of ILAW_FRAME_* */
-typedef uint32_t ilaw_numbers;         /* mask of ILAW_NUMBERS_* */
+typedef uint32_t ilaw_delassus_form;   /* one of ILAW_DELASSUS_* */
+typedef uint32_t ilaw_delassus_forms;  /* mask of them */
+typedef uint32_t ilaw_frame;           /* one of ILAW_FRAME_* */
+typedef uint32_t ilaw_frames;          /* mask of them */
+typedef uint32_t ilaw_number_type;     /* one of ILAW_NUMBERS_* */
+typedef uint32_t ilaw_number_types;    /* mask of them */
 typedef uint32_t ilaw_inputs;          /* mask of ILAW_INPUT_* */
 typedef uint32_t ilaw_outputs;         /* mask of ILAW_OUTPUT_* */
 typedef uint32_t ilaw_capabilities;    /* mask of ILAW_CAN_* */
 typedef uint32_t ilaw_permissions;     /* mask of ILAW_MAY_* */
-typedef uint32_t ilaw_parameter_flags; /* mask of ILAW_PARAMETER_IS_*, _ALLOWS_*, _EXCLUDES_* */
-typedef uint32_t ilaw_variable_flags;  /* mask of ILAW_VARIABLE_* */
-
-/* ---- enumerations ------------------------------------------------------------------------------- */
+typedef uint32_t ilaw_parameter_flags; /* mask of ILAW_FLAG_*, of a parameter */
+typedef uint32_t ilaw_variable_flags;  /* mask of ILAW_FLAG_*, of a state variable */
 
 /* Codes that functions return. Negative: nothing was done, and the message says why. */
 enum {
@@ -103,13 +101,13 @@ enum { ILAW_DIMENSION_1 = 1 << 1, ILAW_DIMENSION_2 = 1 << 2, ILAW_DIMENSION_3 = 
  *   SCALAR    1 value:        H = h I (a lumped mass m gives h = 1/m)
  *   DIAGONAL  d values:       H_00, H_11, H_22, in the axes of the vectors
  *   FULL      d(d+1)/2 values: 1D H_00; 2D H_00 H_11 H_01; 3D H_00 H_11 H_22 H_01 H_02 H_12
- *   TRANSVERSE 2 values:      normal h_N and tangential h_T, H = h_N n n^T + h_T (I - n n^T), in any axes
- * (in dimension 1, too, where the second is not read). A law serves the forms in its mask.
- *   TRANSVERSE_SPIN 5 values, dimension 3 (1.1): h_N h_T k j_N j_T, with H as before and
+ *   TRANSVERSE 2 values:      normal h_N and tangential h_T, H = h_N n n^T + h_T (I - n n^T), in any axes;
+ *     2 values in dimension 1 as well, where h_T is not read
+ *   TRANSVERSE_SPIN 5 values, dimension 3: h_N h_T k j_N j_T, with H as in TRANSVERSE and
  *     v = v_free + H r + k n x m ,   w = w_free + J m - k n x r ,   J = j_N n n^T + j_T (I - n n^T)
  * for the relative velocity v at the contact point, the relative spin w and the moment m. A sphere of radius
  * R on a fixed obstacle has h_N = 1/M, h_T = 1/M + R^2/I, k = R/I, j_N = j_T = 1/I. k changes its sign with
- * n. */
+ * n. A law serves the forms in its mask. */
 enum {
   ILAW_DELASSUS_SCALAR = 1,
   ILAW_DELASSUS_DIAGONAL = 2,
@@ -118,89 +116,77 @@ enum {
   ILAW_DELASSUS_TRANSVERSE_SPIN = 16,
 };
 
-/* Axes in which vectors and H are given; both frames are right-handed. */
-enum {
-  ILAW_FRAME_LOCAL = 1,  /* component 0 normal, 1 and 2 tangential */
-  ILAW_FRAME_GLOBAL = 2, /* the host's axes; each node has a unit normal, and a unit tangent if it likes */
-};
+/* Axes in which vectors and H are given, right-handed. LOCAL: component 0 is normal, 1 and 2 are tangential.
+ * GLOBAL: the host's axes; each node has a unit normal and, optionally, a unit tangent. */
+enum { ILAW_FRAME_LOCAL = 1, ILAW_FRAME_GLOBAL = 2 };
 
 /* Number type of the arrays of a batch; state is always double. Laws compute in double: a float result is the
  * double result rounded once, and an impulse of 2^126 or more is bad input of its node. */
 enum { ILAW_NUMBERS_DOUBLE = 1, ILAW_NUMBERS_FLOAT = 2 };
 
-/* Arrays of a batch that a law reads, a bit mask. v_free and delassus are always read. */
+/* Arrays of a batch that a law reads, a bit mask. v_free and delassus are always read. V_SMOOTH is read where
+ * the host gives it; the others must be given. */
 enum {
   ILAW_INPUT_GAP = 1 << 0,
   ILAW_INPUT_V_PREVIOUS = 1 << 1,
   ILAW_INPUT_AREA = 1 << 2,
   ILAW_INPUT_NORMAL = 1 << 3,  /* always, and only, in the global frame */
   ILAW_INPUT_TANGENT = 1 << 4, /* the law tells its two tangential axes apart (global frame only) */
+  ILAW_INPUT_V_SMOOTH = 1 << 5,
 };
 
-/* Optional arrays that a law can write, a bit mask. The impulse and the state are always written. */
+/* Optional arrays that a law can write, a bit mask; impulse and state are always written. */
 enum { ILAW_OUTPUT_VELOCITY = 1 << 0, ILAW_OUTPUT_STATUS = 1 << 1, ILAW_OUTPUT_ENERGY = 1 << 2 };
 
-/* Further abilities of a law, a bit mask. */
-enum {
-  ILAW_CAN_ADHERE = 1 << 0,       /* r_N may be negative */
-  ILAW_CAN_STORE_ENERGY = 1 << 1, /* the stored part of the energy may be other than zero */
-};
+/* Further abilities of a law, a bit mask: r_N may be negative; the stored part of the energy may not be 0. */
+enum { ILAW_CAN_ADHERE = 1 << 0, ILAW_CAN_STORE_ENERGY = 1 << 1 };
 
-/* Permissions: the host may skip a node that is out of reach; none by default. The law promises that evaluate
- * would have given r = 0, no energy, no amounts, the same status and the same state, bit for bit. */
-enum {
-  ILAW_MAY_SKIP_FRESH = 1 << 0, /* whose state is as initialise left it */
-  ILAW_MAY_SKIP_FREE = 1 << 1,  /* whose last status was ILAW_FREE */
-};
+/* The host may skip a node that is out of reach and whose state is as initialise left it (FRESH), or whose
+ * last status was ILAW_FREE (FREE); none by default. The law promises that evaluate would have given r = 0,
+ * no energy, no amounts, the same status and the same state, bit for bit. */
+enum { ILAW_MAY_SKIP_FRESH = 1 << 0, ILAW_MAY_SKIP_FREE = 1 << 1 };
 
-/* Out of reach, in double precision, in this order of operations, each of them rounded (no fused
- * multiply-add), so that law and host agree to the last bit:
- *
- *   g = gap - gap_offset          (the gap itself without an offset)
- *   v_N = v_free_0                in the local frame
- *   v_N = (n_0 v_free_0 + n_1 v_free_1) + n_2 v_free_2     in the global frame
- *   out of reach: g > 0 and g + position_step * v_N > 0
- */
+/* A node is out of reach if g > 0 and g + position_step * v_N > 0, with g = gap - gap_offset (or the gap
+ * itself) and v_N = v_free_0 in the local frame, (n_0 v_free_0 + n_1 v_free_1) + n_2 v_free_2 in the global
+ * one; and if the same is true for v_smooth where it is given. In double precision, in this order, each
+ * operation rounded (no fused multiply-add), so that law and host agree to the last bit. */
 
-/* Kind of a parameter. */
-enum {
-  ILAW_PARAMETER_NUMBER = 0,
-  ILAW_PARAMETER_COUNT = 1,  /* a whole number, given as a double */
-  ILAW_PARAMETER_CHOICE = 2, /* one of the listed texts */
-};
+/* Kind of a parameter: INTEGER is a whole number, given as a double; CHOICE is one of the listed texts. */
+enum { ILAW_KIND_NUMBER = 0, ILAW_KIND_INTEGER = 1, ILAW_KIND_CHOICE = 2 };
 
-/* Properties of a parameter, a bit mask. */
+/* Flags of a parameter, a bit mask. */
 enum {
-  ILAW_PARAMETER_IS_REQUIRED = 1 << 0,      /* has no default */
-  ILAW_PARAMETER_EXCLUDES_MINIMUM = 1 << 1, /* the value must be larger than minimum */
-  ILAW_PARAMETER_ALLOWS_INFINITY = 1 << 2,  /* +infinity is an ordinary value */
-  ILAW_PARAMETER_ALLOWS_PER_NODE = 1 << 3,  /* may be given per node */
+  ILAW_FLAG_REQUIRED = 1 << 0,         /* has no default */
+  ILAW_FLAG_EXCLUDES_MINIMUM = 1 << 1, /* the value must be larger than minimum */
+  ILAW_FLAG_ALLOWS_INFINITY = 1 << 2,  /* +infinity is an ordinary value */
+  ILAW_FLAG_ALLOWS_PER_NODE = 1 << 3,  /* may be given per node */
   /* A field of the host's model (temperature, fluid_pressure: glossary in docs/abi.md), at the time of the
    * batch. A host that has a field of this name passes it per node, unless its user gave a value. */
-  ILAW_PARAMETER_IS_FIELD = 1 << 4,
-  ILAW_PARAMETER_NEEDS_SPINS = 1 << 5, /* create refuses it for a form of H without spins (1.1) */
+  ILAW_FLAG_FIELD = 1 << 4,
+  ILAW_FLAG_NEEDS_SPINS = 1 << 5, /* create refuses it for a form of H without spins */
 };
 
-/* How the value of a parameter is given. */
+/* Kind of the value of a parameter. TABLE: over one to three axes, linear along each, constant beyond its
+ * ends. PER_NODE: one value per node, given with every batch. */
 enum {
-  ILAW_VALUE_NUMBER = 0,
-  ILAW_VALUE_TEXT = 1,
-  ILAW_VALUE_TABLE = 2,    /* over one to three axes; linear along each, constant beyond its ends */
-  ILAW_VALUE_PER_NODE = 3, /* one value per node, given with every batch */
+  ILAW_KIND_VALUE_NUMBER = 0,
+  ILAW_KIND_VALUE_TEXT = 1,
+  ILAW_KIND_VALUE_TABLE = 2,
+  ILAW_KIND_VALUE_PER_NODE = 3,
 };
 
 /* Kind of a state variable. */
 enum {
-  ILAW_STATE_SCALAR = 0,  /* one double */
-  ILAW_STATE_VECTOR = 1,  /* d doubles: components in the local frame of the node */
-  ILAW_STATE_HISTORY = 2, /* any number of doubles, meaningful to the law alone, in the local frame */
-  ILAW_STATE_AXIS = 3, /* d doubles: a unit vector in the host's axes, the only kind that a host which turns
-                          its whole model must turn too; found in the global frame without tangents only */
-  ILAW_STATE_TANGENTIAL = 4, /* d-1 doubles: a vector without normal component, in the local frame */
+  ILAW_KIND_SCALAR = 0,     /* one double */
+  ILAW_KIND_VECTOR = 1,     /* d doubles: components in the local frame of the node */
+  ILAW_KIND_HISTORY = 2,    /* any number of doubles, meaningful to the law alone, in the local frame */
+  ILAW_KIND_AXIS = 3,       /* d doubles: a unit vector in the host's axes, which a host that turns its whole
+                               model must turn, too; in the global frame without tangents only */
+  ILAW_KIND_TANGENTIAL = 4, /* d-1 doubles: a vector without normal component, in the local frame */
 };
 
-/* Flags of a state variable, a bit mask. */
-enum { ILAW_VARIABLE_INTERNAL = 1 << 0 }; /* the law's bookkeeping: not for pictures and tables */
+/* Flags of a state variable, a bit mask. INTERNAL: the law's bookkeeping, not for pictures and tables. */
+enum { ILAW_FLAG_INTERNAL = 1 << 0 };
 
 /* Status of a node after a step; ABI 1 has these eight for ever. Another number means a broken library: a
  * host takes it for ILAW_BAD_INPUT, and never uses a status as an index unchecked. */
@@ -216,16 +202,17 @@ enum {
   ILAW_STATUS_COUNT = 8,
 };
 
-/* Components of the energy output, per node and step; ABI 1 has these four for ever. The work of the impulse
- * over the step is r.(v_previous + v)/2, exactly, in a central-difference host, and that of the moment
- * m.(spin_previous + spin)/2; their sum divides into these parts.
- * Dissipated parts are never negative; a part that overflows is +infinity, none is NaN. */
+/* Components of the energy output, per node and step: dissipated by friction, by impact, by rupture, and
+ * stored at the end of the step (a level, not an increment). ABI 1 has these four for ever. The work of the
+ * impulse over the step is r.(v_previous + v)/2, exactly, in a central-difference host, and the work of the
+ * moment is m.(spin_previous + spin)/2; their sum divides into these parts. Dissipated parts are never
+ * negative; a part that overflows is +infinity, none is NaN. */
 enum {
-  ILAW_ENERGY_FRICTION = 0, /* dissipated by friction */
-  ILAW_ENERGY_IMPACT = 1,   /* dissipated by impact */
-  ILAW_ENERGY_RUPTURE = 2,  /* dissipated by rupture */
-  ILAW_ENERGY_STORED = 3,   /* stored at the end of the step (a level, not an increment) */
-  ILAW_ENERGY_COUNT = 4,
+  ILAW_ENERGY_FRICTION = 0,
+  ILAW_ENERGY_IMPACT = 1,
+  ILAW_ENERGY_RUPTURE = 2,
+  ILAW_ENERGY_STORED = 3,
+  ILAW_ENERGY_COUNT = 4
 };
 
 /* ---- description -------------------------------------------------------------------------------- */
@@ -233,7 +220,7 @@ enum {
 /* A parameter of a law. Texts are never null; they may be empty. */
 typedef struct ilaw_parameter {
   uint32_t struct_size;
-  ilaw_kind kind;       /* ILAW_PARAMETER_NUMBER ... */
+  ilaw_kind kind;       /* ILAW_KIND_NUMBER ... */
   const char* name;     /* lower case, digits, underscore: what users type */
   const char* symbol;   /* as in the law's page */
   const char* unit;     /* SI, "1" when it has none */
@@ -244,9 +231,8 @@ typedef struct ilaw_parameter {
   ilaw_parameter_flags flags;
   uint32_t choice_count;
   const char* const* choices; /* choice_count texts, null unless kind is CHOICE */
-  const char* const* axes; /* axis_count names over which it may be a table: "time", a field of this law, or
-                              a quantity that the law computes and doc explains ("slip_speed", "pressure");
-                              null: never a table */
+  const char* const* axes; /* axis_count names over which it may be a table: "time", a field of this law, or a
+                              quantity that doc explains ("slip_speed", "pressure"); null: never a table */
   uint32_t axis_count;
   uint32_t reserved; /* 0 */
 } ilaw_parameter;
@@ -254,7 +240,7 @@ typedef struct ilaw_parameter {
 /* A state variable. The state of a node is the concatenation of its variables, in this order. */
 typedef struct ilaw_state_variable {
   uint32_t struct_size;
-  ilaw_kind kind;   /* ILAW_STATE_* */
+  ilaw_kind kind;   /* ILAW_KIND_SCALAR ... */
   const char* name; /* lower case, digits, underscore */
   const char* unit;
   const char* doc;
@@ -274,7 +260,7 @@ typedef struct ilaw_amount {
   const char* doc;
 } ilaw_amount;
 
-/* An axis of a table. The grid of a table has at most ILAW_TABLE_MAX_VALUES points. */
+/* An axis of a table, whose grid has at most ILAW_TABLE_MAX_VALUES points. */
 enum { ILAW_TABLE_MAX_VALUES = 1 << 24 };
 typedef struct ilaw_axis {
   uint32_t struct_size;
@@ -287,14 +273,14 @@ typedef struct ilaw_axis {
 /* A parameter with its value, for create. */
 typedef struct ilaw_argument {
   uint32_t struct_size;
-  ilaw_kind kind;       /* ILAW_VALUE_* */
+  ilaw_kind kind;       /* ILAW_KIND_VALUE_* */
   const char* name;     /* of the parameter */
-  double number;        /* VALUE_NUMBER; infinity where the parameter allows it */
-  const char* text;     /* VALUE_TEXT: the choice; else null */
-  const double* values; /* VALUE_TABLE: one per point of the grid, the last axis varies fastest; else null */
-  const ilaw_axis* const* axes; /* VALUE_TABLE: axis_count, each name once; else null. create refuses an axis
+  double number;        /* NUMBER; infinity where the parameter allows it */
+  const char* text;     /* TEXT: the choice; else null */
+  const double* values; /* TABLE: one per point of the grid, the last axis varies fastest; else null */
+  const ilaw_axis* const* axes; /* TABLE: axis_count, each name once; else null. create refuses an axis
                                    that is a field without a value or per-node array */
-  uint32_t axis_count;          /* VALUE_TABLE: 1 to 3; else 0 */
+  uint32_t axis_count;          /* TABLE: 1 to 3; else 0 */
   uint32_t reserved;            /* 0 */
 } ilaw_argument;
 
@@ -302,14 +288,14 @@ typedef struct ilaw_argument {
 typedef struct ilaw_setup {
   uint32_t struct_size;
   uint32_t dimension;                    /* 1, 2 or 3 */
-  ilaw_delassus_forms delassus_form;     /* one of ILAW_DELASSUS_*: the form every batch will have */
-  ilaw_frames frame;                     /* one of ILAW_FRAME_*: the frame every batch will have */
+  ilaw_delassus_form delassus_form;      /* the form every batch will have */
+  ilaw_frame frame;                      /* the frame every batch will have */
   uint64_t flags;                        /* 0: none is defined in 1.0; an unknown bit is refused */
   const ilaw_argument* const* arguments; /* argument_count pointers; may be null when 0 */
   uint32_t argument_count;
-  uint32_t has_tangent; /* 1: batches in the global frame will carry a tangent */
-  ilaw_numbers numbers; /* one of ILAW_NUMBERS_*: of the arrays of every batch */
-  uint32_t reserved;    /* 0 */
+  uint32_t has_tangent;     /* 1: batches in the global frame will carry a tangent */
+  ilaw_number_type numbers; /* of the arrays of every batch */
+  uint32_t reserved;        /* 0 */
 } ilaw_setup;
 
 /* An instance of a law: its checked parameters. Opaque, immutable, usable from any number of threads. */
@@ -340,7 +326,7 @@ typedef struct ilaw_instance_info {
 /* Component c of node i stands at values[i * node_stride + c * component_stride] (strides in elements).
  * AoS (3,n): strides 3 and 1. SoA: strides 1 and n. A node stride of 0 gives all nodes the same value.
  * The setup's numbers decide which pointer is set, values or floats; the other one is null. Both null: the
- * array is absent. State has values alone. */
+ * array is absent. State has values alone. A number type of a later version would use values, cast. */
 typedef struct ilaw_input {
   const double* values;
   const float* floats;
@@ -357,7 +343,8 @@ typedef struct ilaw_output {
 } ilaw_output;
 
 /* Arguments of evaluate. d is the dimension, s the state size of the instance.
- * Outputs may not overlap inputs or each other, except that state_out may be state_in. */
+ * Outputs may not overlap inputs or each other, except that state_out may be state_in. Time and steps are
+ * common to all nodes; arrays with values per node may be appended by a later minor version. */
 typedef struct ilaw_batch {
   uint32_t struct_size;
   int32_t index_base;     /* first value of an index: 0 in C, 1 in Fortran */
@@ -369,12 +356,16 @@ typedef struct ilaw_batch {
   double time;            /* t_{n+1}, of the configuration that the gaps belong to */
   double velocity_step;   /* > 0: an impulse is a force times it */
   double position_step;   /* > 0: a predicted gap is gap + position_step * v_N */
-  ilaw_input v_free;      /* d: velocity without interface, relative to the obstacle [m/s] */
-  ilaw_input delassus;    /* H, see ILAW_DELASSUS_* [1/kg]; symmetric positive definite */
-  ilaw_input gap;         /* 1: signed distance at time [m] */
-  ilaw_input gap_offset;  /* 1, optional: subtracted from the gap (thickness, initial slack) [m] */
-  ilaw_input v_previous;  /* d: half-step velocity before this step, relative to the obstacle [m/s] */
-  ilaw_input area;        /* 1: tributary area [m^2], >= 0 */
+  ilaw_input v_free;      /* d: velocity without this contact's impulse, relative to the obstacle [m/s] */
+  ilaw_input v_smooth;   /* d, optional: the same without the impulse of any contact in this step: restitution
+                            decides with it whether a contact lands. Absent: v_free */
+  ilaw_input delassus;   /* H, see ILAW_DELASSUS_* [1/kg]; symmetric positive definite */
+  ilaw_input gap;        /* 1: signed distance at time [m] */
+  ilaw_input gap_offset; /* 1, optional: subtracted from the gap (thickness, initial slack) [m] */
+  ilaw_input v_previous; /* d: half-step velocity before this step, relative to the obstacle [m/s] */
+  ilaw_input spin_free;  /* 3, where the form of H has spins: relative, without this contact's moment */
+  ilaw_input spin_previous; /* 3, with spins: before this step; read where v_previous is */
+  ilaw_input area;          /* 1: tributary area [m^2], >= 0 */
   ilaw_input normal;  /* d, global frame: unit normal, to 1e-6 of its squared length. A pair of bodies keeps
                          its roles, and so the sense of its normal, for life */
   ilaw_input tangent; /* d, global frame, optional: unit tangent, orthogonal to the normal, both to 1e-6;
@@ -385,17 +376,14 @@ typedef struct ilaw_batch {
   ilaw_input state_in;                   /* s */
   ilaw_output state_out;                 /* s; may be the array of state_in, with the same strides */
   ilaw_output impulse;                   /* d: r [N.s] */
+  ilaw_output moment;                    /* 3, with spins: m, on the body [N.m.s]; always written */
   ilaw_output velocity;                  /* d, optional: v = v_free + H r [m/s] */
+  ilaw_output spin;                      /* 3, with spins, optional: w [rad/s] */
   ilaw_output energy;                    /* four: ILAW_ENERGY_*, optional [J] */
   ilaw_status* status;                   /* optional: per node, at status[i * status_stride] */
   int64_t status_stride;
   const ilaw_output* amounts; /* 1 each, in the order of the instance info; an absent one is not wanted; null:
                                  none is */
-  ilaw_input spin_free; /* the next four (1.1) where the form of H has spins, 3 each: spin without interface,
-                           relative to the obstacle's [rad/s] */
-  ilaw_input spin_previous; /* before this step; read where v_previous is */
-  ilaw_output moment;       /* m, on the body [N.m.s]; always written */
-  ilaw_output spin;         /* w, optional */
 } ilaw_batch;
 
 /* Findings of evaluate and initialise. The caller sets struct_size and zeroes the rest. */
@@ -405,10 +393,9 @@ typedef struct ilaw_report {
   int64_t bad_count;      /* nodes with bad input */
   int64_t first_bad_node; /* the node number (without index_base) of the first in the batch, -1 when none */
   const char* reason;     /* of that node, or why the call was refused; static text, null when none */
-  double stable_velocity_step; /* largest velocity_step at which the law, as a spring between the host's
-                                  masses, is stable at every good node of the batch (position_step being as
-                                  long as it): explicit codes take it into their step control. Infinity where
-                                  the law needs none; 0: the library did not say */
+  double stable_velocity_step; /* largest velocity_step (with a position_step as long) at which the law, as a
+                                  spring between the host's masses, is stable at every good node, for the step
+                                  control of explicit codes. Infinity: no limit; 0: the library did not say */
 } ilaw_report;
 
 /* ---- laws and libraries ------------------------------------------------------------------------- */
@@ -429,7 +416,7 @@ typedef struct ilaw_law {
   ilaw_dimensions dimensions;
   ilaw_delassus_forms delassus_forms;
   ilaw_frames frames;
-  ilaw_numbers numbers;
+  ilaw_number_types numbers;
   ilaw_inputs inputs; /* all that it may read, for some parameters */
   ilaw_outputs outputs;
   ilaw_capabilities capabilities;

@@ -33,12 +33,12 @@ class parameters {
   };
 
   parameters& number(const std::string& name, double value) {
-    entry& made = add(name, ILAW_VALUE_NUMBER);
+    entry& made = add(name, ILAW_KIND_VALUE_NUMBER);
     made.number = value;
     return *this;
   }
   parameters& text(const std::string& name, const std::string& choice) {
-    entry& made = add(name, ILAW_VALUE_TEXT);
+    entry& made = add(name, ILAW_KIND_VALUE_TEXT);
     made.text = choice;
     return *this;
   }
@@ -52,13 +52,13 @@ class parameters {
       throw error(ILAW_INVALID_PARAMETER, "parameter '" + name + "': a table of " +
                                               std::to_string(values.size()) +
                                               " values; expected one value per point of its axes");
-    entry& made = add(name, ILAW_VALUE_TABLE);
+    entry& made = add(name, ILAW_KIND_VALUE_TABLE);
     made.axes = axes;
     made.values = values;
     return *this;
   }
   parameters& per_node(const std::string& name) {
-    add(name, ILAW_VALUE_PER_NODE);
+    add(name, ILAW_KIND_VALUE_PER_NODE);
     return *this;
   }
 
@@ -74,7 +74,7 @@ class parameters {
  private:
   struct entry {
     std::string name, text;
-    ilaw_kind kind = ILAW_VALUE_NUMBER;
+    ilaw_kind kind = ILAW_KIND_VALUE_NUMBER;
     double number = 0.0;
     std::vector<double> values;
     std::vector<axis> axes;
@@ -90,13 +90,13 @@ class parameters {
         axis_structs.push_back(
             {sizeof(ilaw_axis), 0, along.name.c_str(), along.points.data(), along.points.size()});
       for (const ilaw_axis& along : axis_structs) axis_pointers.push_back(&along);
-      const bool is_table = kind == ILAW_VALUE_TABLE;
+      const bool is_table = kind == ILAW_KIND_VALUE_TABLE;
       argument = {};
       argument.struct_size = sizeof argument;
       argument.kind = kind;
       argument.name = name.c_str();
       argument.number = number;
-      argument.text = kind == ILAW_VALUE_TEXT ? text.c_str() : nullptr;
+      argument.text = kind == ILAW_KIND_VALUE_TEXT ? text.c_str() : nullptr;
       argument.values = is_table ? values.data() : nullptr;
       argument.axes = is_table ? axis_pointers.data() : nullptr;
       argument.axis_count = static_cast<std::uint32_t>(axes.size());

@@ -68,9 +68,9 @@ struct ilaw_plain_table {
 struct ilaw_instance {
   const ilaw_plain_law* plain;
   uint32_t dimension, per_node_count;
-  ilaw_delassus_forms form;
-  ilaw_frames frame;
-  ilaw_numbers numbers;
+  ilaw_delassus_form form;
+  ilaw_frame frame;
+  ilaw_number_type numbers;
   int given[ILAW_PLAIN_MAX];
   ilaw_kind kind[ILAW_PLAIN_MAX];
   uint32_t slot[ILAW_PLAIN_MAX]; /* among the arrays per node */
@@ -141,7 +141,7 @@ static inline double ilaw_plain_between(double a, double b, double part) {
  * for each axis of the parameter; those of "time" and of fields are not read. */
 static inline double ilaw_value(const ilaw_node* node, uint32_t p, const double* computed) {
   const struct ilaw_plain_table* t = &node->instance->table[p];
-  if (node->instance->kind[p] != ILAW_VALUE_TABLE) return node->value[p];
+  if (node->instance->kind[p] != ILAW_KIND_VALUE_TABLE) return node->value[p];
   uint64_t low[3] = {0, 0, 0};
   double part[3] = {0.0, 0.0, 0.0}, corner[8];
   for (uint32_t a = 0; a < t->axis_count; ++a) {
@@ -175,9 +175,9 @@ static inline double ilaw_value(const ilaw_node* node, uint32_t p, const double*
 }
 
 static inline int ilaw_plain_is_allowed(const ilaw_parameter* p, double x) {
-  if (x == INFINITY) return (p->flags & ILAW_PARAMETER_ALLOWS_INFINITY) != 0;
-  if (p->kind == ILAW_PARAMETER_COUNT && x != floor(x)) return 0;
-  return (p->flags & ILAW_PARAMETER_EXCLUDES_MINIMUM ? x > p->minimum : x >= p->minimum) && x <= p->maximum;
+  if (x == INFINITY) return (p->flags & ILAW_FLAG_ALLOWS_INFINITY) != 0;
+  if (p->kind == ILAW_KIND_INTEGER && x != floor(x)) return 0;
+  return (p->flags & ILAW_FLAG_EXCLUDES_MINIMUM ? x > p->minimum : x >= p->minimum) && x <= p->maximum;
 }
 
 static inline double* ilaw_plain_copy(const double* x, uint64_t count) {
@@ -219,19 +219,19 @@ static inline const char* ilaw_plain_keep_table(ilaw_instance* own, uint32_t p, 
 
 static inline const char* ilaw_plain_keep(ilaw_instance* own, uint32_t p, const ilaw_argument* a) {
   const ilaw_parameter* known = own->plain->law.parameters[p];
-  const int is_choice = known->kind == ILAW_PARAMETER_CHOICE;
+  const int is_choice = known->kind == ILAW_KIND_CHOICE;
   if (own->given[p]++) return "is given twice";
-  if (known->flags & ILAW_PARAMETER_NEEDS_SPINS && own->form != ILAW_DELASSUS_TRANSVERSE_SPIN)
+  if (known->flags & ILAW_FLAG_NEEDS_SPINS && own->form != ILAW_DELASSUS_TRANSVERSE_SPIN)
     return "needs spins, which this form of H has not";
   own->kind[p] = a->kind, own->number[p] = a->number;
-  if (a->kind == ILAW_VALUE_NUMBER && !is_choice)
+  if (a->kind == ILAW_KIND_VALUE_NUMBER && !is_choice)
     return ilaw_plain_is_allowed(known, a->number) ? NULL : "is out of range";
-  if (a->kind == ILAW_VALUE_TEXT && is_choice && a->text)
+  if (a->kind == ILAW_KIND_VALUE_TEXT && is_choice && a->text)
     for (uint32_t c = 0; c < known->choice_count; ++c)
       if (strcmp(known->choices[c], a->text) == 0) return own->number[p] = c, NULL;
   if (is_choice) return "is none of its choices";
-  if (a->kind == ILAW_VALUE_TABLE) return ilaw_plain_keep_table(own, p, a);
-  if (a->kind != ILAW_VALUE_PER_NODE || !(known->flags & ILAW_PARAMETER_ALLOWS_PER_NODE))
+  if (a->kind == ILAW_KIND_VALUE_TABLE) return ilaw_plain_keep_table(own, p, a);
+  if (a->kind != ILAW_KIND_VALUE_PER_NODE || !(known->flags & ILAW_FLAG_ALLOWS_PER_NODE))
     return "cannot be given in this way";
   own->slot[p] = own->per_node_count;
   own->per_node[own->per_node_count++] = known->name;
@@ -271,10 +271,10 @@ static inline ilaw_result ilaw_plain_refuse_argument(const ilaw_instance* own, c
   const ilaw_parameter* known = p < 0 ? NULL : own->plain->law.parameters[p];
   char range[160] = "";
   if (!*why) return ilaw_plain_refuse(ILAW_OUT_OF_MEMORY, message, size, own->plain->law.id, "out of memory");
-  if (known && own->given[p] && own->kind[p] == ILAW_VALUE_NUMBER)
+  if (known && own->given[p] && own->kind[p] == ILAW_KIND_VALUE_NUMBER)
     snprintf(range, sizeof range, ": found %.17g, expected %s%g to %g%s", own->number[p],
-             known->flags & ILAW_PARAMETER_EXCLUDES_MINIMUM ? "above " : "", known->minimum, known->maximum,
-             known->flags & ILAW_PARAMETER_ALLOWS_INFINITY ? " or inf" : "");
+             known->flags & ILAW_FLAG_EXCLUDES_MINIMUM ? "above " : "", known->minimum, known->maximum,
+             known->flags & ILAW_FLAG_ALLOWS_INFINITY ? " or inf" : "");
   if (message && size > 0)
     snprintf(message, size, "%s: parameter '%.80s' %s%s", own->plain->law.id, name, why, range);
   return ILAW_INVALID_PARAMETER;
@@ -298,7 +298,7 @@ static inline ilaw_result ilaw_plain_keep_all(ilaw_instance* own, const ilaw_set
   }
   for (uint32_t p = 0; p < law->parameter_count; ++p) {
     const char* name = law->parameters[p]->name;
-    if (law->parameters[p]->flags & ILAW_PARAMETER_IS_REQUIRED && !own->given[p])
+    if (law->parameters[p]->flags & ILAW_FLAG_REQUIRED && !own->given[p])
       return ilaw_plain_refuse_argument(own, name, (int)p, "is missing", message, size);
     for (uint32_t a = 0; a < own->table[p].axis_count; ++a)
       if (own->table[p].field[a] >= 0 && !own->given[own->table[p].field[a]])
@@ -488,12 +488,12 @@ static inline const char* ilaw_plain_read(const ilaw_instance* own, const ilaw_b
   for (uint32_t p = 0; p < law->parameter_count; ++p) {
     static const double none[3] = {0.0, 0.0, 0.0};
     node->value[p] = own->number[p];
-    if (own->kind[p] == ILAW_VALUE_PER_NODE) {
+    if (own->kind[p] == ILAW_KIND_VALUE_PER_NODE) {
       node->value[p] = ilaw_get(&b->per_node_parameters[own->slot[p]], i, 0);
       if (!ilaw_plain_is_allowed(law->parameters[p], node->value[p]))
         return "a value per node is out of range";
     }
-    if (own->kind[p] == ILAW_VALUE_TABLE) node->value[p] = ilaw_value(node, p, none);
+    if (own->kind[p] == ILAW_KIND_VALUE_TABLE) node->value[p] = ilaw_value(node, p, none);
   }
   return NULL;
 }

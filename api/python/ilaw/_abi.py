@@ -11,7 +11,8 @@ from ctypes import c_char_p, c_double, c_int32, c_int64, c_size_t, c_uint16, c_u
 from enum import IntEnum, IntFlag
 
 ABI_MAJOR = 1
-ABI_MINOR = 1
+ABI_MINOR = 0
+STACK_SIZE = 65536
 DIMENSION_1 = 2
 DIMENSION_2 = 4
 DIMENSION_3 = 8
@@ -72,6 +73,7 @@ class Input(Flags):
     AREA = 4
     NORMAL = 8
     TANGENT = 16
+    V_SMOOTH = 32
 
 
 class Output(Flags):
@@ -100,18 +102,18 @@ class ParameterKind(IntEnum):
     """Kind of a parameter."""
 
     NUMBER = 0
-    COUNT = 1
+    INTEGER = 1
     CHOICE = 2
 
 
 class ParameterFlag(Flags):
-    """Properties of a parameter."""
+    """Flags of a parameter."""
 
-    IS_REQUIRED = 1
+    REQUIRED = 1
     EXCLUDES_MINIMUM = 2
     ALLOWS_INFINITY = 4
     ALLOWS_PER_NODE = 8
-    IS_FIELD = 16
+    FIELD = 16
     NEEDS_SPINS = 32
 
 
@@ -293,10 +295,13 @@ class batch(ctypes.Structure):
         ("velocity_step", c_double),
         ("position_step", c_double),
         ("v_free", input),
+        ("v_smooth", input),
         ("delassus", input),
         ("gap", input),
         ("gap_offset", input),
         ("v_previous", input),
+        ("spin_free", input),
+        ("spin_previous", input),
         ("area", input),
         ("normal", input),
         ("tangent", input),
@@ -304,15 +309,13 @@ class batch(ctypes.Structure):
         ("state_in", input),
         ("state_out", output),
         ("impulse", output),
+        ("moment", output),
         ("velocity", output),
+        ("spin", output),
         ("energy", output),
         ("status", c_void_p),
         ("status_stride", c_int64),
         ("amounts", POINTER(output)),
-        ("spin_free", input),
-        ("spin_previous", input),
-        ("moment", output),
-        ("spin", output),
     ]
 
 

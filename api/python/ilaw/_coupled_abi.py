@@ -56,14 +56,14 @@ class contacts(ctypes.Structure):
         ("counterpart_arm", _abi.input),
         ("wall_velocity", _abi.input),
         ("wall_previous", _abi.input),
+        ("wall_spin", _abi.input),
+        ("wall_spin_previous", _abi.input),
         ("body_count", c_uint32),
         ("counterpart_count", c_uint32),
         ("body_weight", _abi.input),
         ("counterpart_weight", _abi.input),
         ("weight_size", c_uint32),
         ("reserved", c_uint32),
-        ("wall_spin", _abi.input),
-        ("wall_spin_previous", _abi.input),
     ]
 
 

@@ -16,7 +16,7 @@ from .errors import NotFound, raise_for
 class Parameter:
     """A parameter of a law. `default` is None where the parameter must be given.
 
-    axes: names over which it may be a table; none: never a table. A parameter with ParameterFlag.IS_FIELD is a
+    axes: names over which it may be a table; none: never a table. A parameter with ParameterFlag.FIELD is a
     field of the host's model, such as a temperature: give it per node where there is one.
     """
 
@@ -126,7 +126,7 @@ def texts(read: ctypes._Pointer, count: int) -> tuple[str, ...]:
 def _parameter(read: _abi.parameter) -> Parameter:
     choices = texts(read.choices, read.choice_count)
     default: float | str | None = None
-    if not read.flags & _abi.ParameterFlag.IS_REQUIRED:
+    if not read.flags & _abi.ParameterFlag.REQUIRED:
         default = choices[int(read.default_value)] if choices else read.default_value
     return Parameter(
         name=read.name.decode(),

@@ -9,7 +9,7 @@
 namespace ilaw::host {
 
 CoupledGroup::CoupledGroup(const Law& law, const std::string& interface, int dimension,
-                           ilaw_delassus_forms form, int partner_count)
+                           ilaw_delassus_form form, int partner_count)
     : dimension_(dimension),
       form_(form),
       partner_count_(partner_count),

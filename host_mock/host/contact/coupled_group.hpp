@@ -25,7 +25,7 @@ struct CoupledContact {
 class CoupledGroup {
  public:
   // partner_count: bodies on the other side of a contact; 0: an obstacle.
-  CoupledGroup(const Law& law, const std::string& interface, int dimension, ilaw_delassus_forms form,
+  CoupledGroup(const Law& law, const std::string& interface, int dimension, ilaw_delassus_form form,
                int partner_count);
 
   // ---- before a solve ----
@@ -73,7 +73,7 @@ class CoupledGroup {
 
  private:
   int dimension_;
-  ilaw_delassus_forms form_;
+  ilaw_delassus_form form_;
   int partner_count_;
   std::size_t state_size_;
   WatchedLaw law_;

@@ -85,7 +85,7 @@ std::vector<std::size_t> Law::axes() const {
   std::vector<std::size_t> axes;
   std::size_t at = 0;
   for (std::uint32_t i = 0; i < info_.state_variable_count; at += info_.state_variables[i++]->count)
-    if (info_.state_variables[i]->kind == ILAW_STATE_AXIS) axes.push_back(at);
+    if (info_.state_variables[i]->kind == ILAW_KIND_AXIS) axes.push_back(at);
   return axes;
 }
 

@@ -9,7 +9,7 @@ namespace ilaw::host {
 namespace {
 
 bool has_field(const ilaw_law& law, const std::string& name) {
-  constexpr ilaw_parameter_flags field = ILAW_PARAMETER_IS_FIELD | ILAW_PARAMETER_ALLOWS_PER_NODE;
+  constexpr ilaw_parameter_flags field = ILAW_FLAG_FIELD | ILAW_FLAG_ALLOWS_PER_NODE;
   for (std::uint32_t k = 0; k < law.parameter_count; ++k)
     if (name == law.parameters[k]->name) return (law.parameters[k]->flags & field) == field;
   return false;

@@ -111,10 +111,10 @@ std::vector<StateArray> add_states(vtkUnstructuredGrid& grid, const ilaw_instanc
   int entry = 0;
   for (std::uint32_t i = 0; i < info.state_variable_count; ++i) {
     const ilaw_state_variable& variable = *info.state_variables[i];
-    const bool vector = variable.kind == ILAW_STATE_VECTOR || variable.kind == ILAW_STATE_TANGENTIAL;
+    const bool vector = variable.kind == ILAW_KIND_VECTOR || variable.kind == ILAW_KIND_TANGENTIAL;
     const auto count = static_cast<int>(variable.count);
-    const bool is_shown = (variable.flags & ILAW_VARIABLE_INTERNAL) == 0;
-    if (is_shown && count > 0 && (vector || variable.kind == ILAW_STATE_SCALAR))
+    const bool is_shown = (variable.flags & ILAW_FLAG_INTERNAL) == 0;
+    if (is_shown && count > 0 && (vector || variable.kind == ILAW_KIND_SCALAR))
       states.push_back(
           {add_array(grid, prefix + variable.name, node_count, vector ? 3 : 1, no_value), entry, count});
     entry += count;

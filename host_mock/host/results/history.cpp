@@ -14,9 +14,9 @@ void for_each_state(const ilaw_instance_info& info, Visit visit) {
   for (std::uint32_t i = 0; i < info.state_variable_count; ++i) {
     const ilaw_state_variable& variable = *info.state_variables[i];
     const auto count = static_cast<int>(variable.count);
-    const bool is_shown = (variable.flags & ILAW_VARIABLE_INTERNAL) == 0;
-    if (is_shown && variable.kind == ILAW_STATE_SCALAR) visit(std::string(variable.name), entry);
-    if (is_shown && (variable.kind == ILAW_STATE_VECTOR || variable.kind == ILAW_STATE_TANGENTIAL))
+    const bool is_shown = (variable.flags & ILAW_FLAG_INTERNAL) == 0;
+    if (is_shown && variable.kind == ILAW_KIND_SCALAR) visit(std::string(variable.name), entry);
+    if (is_shown && (variable.kind == ILAW_KIND_VECTOR || variable.kind == ILAW_KIND_TANGENTIAL))
       for (int k = 0; k < count; ++k) visit(variable.name + std::to_string(k), entry + k);
     entry += count;
   }

@@ -15,11 +15,11 @@ namespace {
 using nlohmann::json;
 
 json plain_value(const ilaw_parameter& p) {
-  if (p.kind == ILAW_PARAMETER_CHOICE) return p.choices[0];
-  if (p.kind == ILAW_PARAMETER_COUNT) return std::max(1.0, std::ceil(p.minimum));
+  if (p.kind == ILAW_KIND_CHOICE) return p.choices[0];
+  if (p.kind == ILAW_KIND_INTEGER) return std::max(1.0, std::ceil(p.minimum));
   const double usual = std::string(p.unit) == "1" ? 0.3 : 1.0;
   if (usual > p.minimum && usual <= p.maximum) return usual;
-  return (p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM) ? 0.5 * (p.minimum + p.maximum) : p.minimum;
+  return (p.flags & ILAW_FLAG_EXCLUDES_MINIMUM) ? 0.5 * (p.minimum + p.maximum) : p.minimum;
 }
 
 // {"per_node": value} is one value here, of which the arrays of all nodes are made.
@@ -61,7 +61,7 @@ std::vector<std::string> laws_of(const ilaw::library& library) {
 BenchCase with_required_parameters(BenchCase bench_case, const ilaw_law& law) {
   for (std::uint32_t k = 0; k < law.parameter_count; ++k) {
     const ilaw_parameter& p = *law.parameters[k];
-    if ((p.flags & ILAW_PARAMETER_IS_REQUIRED) && !bench_case.parameters.contains(p.name))
+    if ((p.flags & ILAW_FLAG_REQUIRED) && !bench_case.parameters.contains(p.name))
       bench_case.parameters[p.name] = plain_value(p);
   }
   return bench_case;

@@ -25,10 +25,10 @@ Range usual_range(const std::string& unit, double dt) {
 }
 
 double random_number(const ilaw_parameter& p, double dt, Draw& draw) {
-  if (p.kind == ILAW_PARAMETER_COUNT)  // the largest is a state of 100 kB per node, which is only slow
+  if (p.kind == ILAW_KIND_INTEGER)  // the largest is a state of 100 kB per node, which is only slow
     return draw.whole(static_cast<int>(std::ceil(p.minimum)),
                       static_cast<int>(std::min(p.maximum, p.minimum + 64.0)));
-  if (draw.chance(0.15) && !(p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM)) return p.minimum;
+  if (draw.chance(0.15) && !(p.flags & ILAW_FLAG_EXCLUDES_MINIMUM)) return p.minimum;
   const bool is_bounded = p.maximum < std::numeric_limits<double>::max();
   if (draw.chance(0.15) && is_bounded) return p.maximum;
   const Range usual = usual_range(p.unit, dt);
@@ -44,10 +44,10 @@ json random_parameters(const ilaw_law& law, double dt, Draw& draw) {
   json made = json::object();
   for (std::uint32_t i = 0; i < law.parameter_count; ++i) {
     const ilaw_parameter& p = *law.parameters[i];
-    if (!(p.flags & ILAW_PARAMETER_IS_REQUIRED) && draw.chance(0.35)) continue;
-    if (p.kind == ILAW_PARAMETER_CHOICE)
+    if (!(p.flags & ILAW_FLAG_REQUIRED) && draw.chance(0.35)) continue;
+    if (p.kind == ILAW_KIND_CHOICE)
       made[p.name] = p.choices[draw.whole(0, static_cast<int>(p.choice_count) - 1)];
-    else if ((p.flags & ILAW_PARAMETER_ALLOWS_INFINITY) && draw.chance(0.15))
+    else if ((p.flags & ILAW_FLAG_ALLOWS_INFINITY) && draw.chance(0.15))
       made[p.name] = "inf";
     else
       made[p.name] = random_number(p, dt, draw);

@@ -141,8 +141,8 @@ def test_calls_are_refused_with_the_reason(call, kind, message):
 
 def test_the_description_names_fields_axes_and_amounts():
     described = ilaw.describe("template_c")
-    assert ilaw.ParameterFlag.IS_FIELD in described.parameters["temperature"].flags
-    assert ilaw.ParameterFlag.IS_REQUIRED in described.parameters["friction"].flags
+    assert ilaw.ParameterFlag.FIELD in described.parameters["temperature"].flags
+    assert ilaw.ParameterFlag.REQUIRED in described.parameters["friction"].flags
     assert described.parameters["friction"].axes == ("slip_speed", "temperature", "time")
     assert described.parameters["partition"].axes == ()
     assert described.frames == ("local", "global") and described.numbers == ("double", "float")

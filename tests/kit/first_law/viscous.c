@@ -3,9 +3,8 @@
 #include <ilaw/plain_c.h>
 
 enum { VISCOSITY };
-static const ilaw_parameter viscosity =
-    ILAW_PLAIN_PARAMETER("viscosity", "c", "N.s/m^3", "Force per area and speed.", .maximum = 1e300,
-                         .flags = ILAW_PARAMETER_IS_REQUIRED);
+static const ilaw_parameter viscosity = ILAW_PLAIN_PARAMETER(
+    "viscosity", "c", "N.s/m^3", "Force per area and speed.", .maximum = 1e300, .flags = ILAW_FLAG_REQUIRED);
 static const ilaw_parameter* const parameters[] = {&viscosity};
 static const char* const references[] = {"docs/first_law.md"};
 

@@ -7,10 +7,10 @@ static const ilaw_parameter friction =
     ILAW_PLAIN_PARAMETER("friction", "mu", "1", "Coefficient of friction.", .maximum = 1e300);
 static const ilaw_parameter rolling =
     ILAW_PLAIN_PARAMETER("rolling", "rho", "m", "Largest rolling moment over normal force.", .maximum = 1e300,
-                         .flags = ILAW_PARAMETER_NEEDS_SPINS);
+                         .flags = ILAW_FLAG_NEEDS_SPINS);
 static const ilaw_parameter twisting =
     ILAW_PLAIN_PARAMETER("twisting", "tau", "m", "Largest twisting moment over normal force.",
-                         .maximum = 1e300, .flags = ILAW_PARAMETER_NEEDS_SPINS);
+                         .maximum = 1e300, .flags = ILAW_FLAG_NEEDS_SPINS);
 static const ilaw_parameter* const parameters[] = {&friction, &rolling, &twisting};
 
 /* x = -f/h, or where that is longer than `most`, as long as that. */

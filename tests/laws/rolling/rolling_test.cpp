@@ -304,7 +304,7 @@ TEST(Rolling, RefusesBatchesWithoutSpins) {
     EXPECT_EQ(nodes.report.reason, why);
   };
   ilaw_batch b = nodes.batch();
-  b.struct_size = ILAW_BATCH_SIZE_1_0;
+  b.spin_free = {};
   refused(b, "spin_free is null");
   b = nodes.batch(), b.spin_previous = {};
   refused(b, "spin_previous is null");

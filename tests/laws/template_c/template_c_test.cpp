@@ -22,7 +22,7 @@ struct Brake {
   Brake() {
     axes[0] = {sizeof(ilaw_axis), 0, "slip_speed", brake.speeds.data(), 3};
     axes[1] = {sizeof(ilaw_axis), 0, "temperature", brake.temperatures.data(), 2};
-    ilaw_argument& friction = add("friction", ILAW_VALUE_TABLE);
+    ilaw_argument& friction = add("friction", ILAW_KIND_VALUE_TABLE);
     friction.values = brake.mu[0].data();
     friction.axes = pointers;
     friction.axis_count = 2;
@@ -85,7 +85,7 @@ struct Node {
 
 TEST(template_c, SolvesTheSlipWithinTheStep) {
   Brake given;
-  given.add("temperature", ILAW_VALUE_PER_NODE);
+  given.add("temperature", ILAW_KIND_VALUE_PER_NODE);
   const ilaw::interface law = given.law();
   Random random(1);
   int sticks = 0;
@@ -112,8 +112,8 @@ TEST(template_c, SolvesTheSlipWithinTheStep) {
 // the motion round within the step.
 TEST(template_c, DividesItsWork) {
   Brake given;
-  given.add("temperature", ILAW_VALUE_NUMBER, 400.0);
-  given.add("partition", ILAW_VALUE_NUMBER, 0.7);
+  given.add("temperature", ILAW_KIND_VALUE_NUMBER, 400.0);
+  given.add("partition", ILAW_KIND_VALUE_NUMBER, 0.7);
   const ilaw::interface law = given.law();
   Random random(2);
   int turned = 0;
@@ -143,7 +143,7 @@ TEST(template_c, DividesItsWork) {
 TEST(template_c, StopsABlockAsCoulombSays) {
   Brake given;
   given.arguments.clear();
-  given.add("friction", ILAW_VALUE_NUMBER, 0.25);
+  given.add("friction", ILAW_KIND_VALUE_NUMBER, 0.25);
   const ilaw::interface law = given.law();
   constexpr double h = 1e-3, g = 10.0, mu = 0.25, start = 2.0;
   double v = start, heat = 0.0;

@@ -69,25 +69,25 @@ static const void* ILAW_CALL extension(const char* name) {
 
 /* Mistakes of an instance in its state and its parameters. */
 #if defined(VARIANT_WRAPPING_STATE)
-static const ilaw_state_variable first = {sizeof first, ILAW_STATE_HISTORY, "first", "1",
-                                          "",           UINT64_MAX - 1,     0,       0};
+static const ilaw_state_variable first = {sizeof first, ILAW_KIND_HISTORY, "first", "1",
+                                          "",           UINT64_MAX - 1,    0,       0};
 #define STATE_SIZE 1
 #elif defined(VARIANT_HUGE_STATE)
-static const ilaw_state_variable first = {sizeof first, ILAW_STATE_HISTORY, "first", "1",
-                                          "",           (uint64_t)1 << 40,  0,       0};
+static const ilaw_state_variable first = {sizeof first, ILAW_KIND_HISTORY, "first", "1",
+                                          "",           (uint64_t)1 << 40, 0,       0};
 #define STATE_SIZE (((uint64_t)1 << 40) + 3)
 #elif defined(VARIANT_WRONG_COUNT)
-static const ilaw_state_variable first = {sizeof first, ILAW_STATE_SCALAR, "first", "1", "", 2, 0, 0};
+static const ilaw_state_variable first = {sizeof first, ILAW_KIND_SCALAR, "first", "1", "", 2, 0, 0};
 #define STATE_SIZE 5
 #elif defined(VARIANT_WRONG_KIND)
 static const ilaw_state_variable first = {sizeof first, 77, "first", "1", "", 1, 0, 0};
 #define STATE_SIZE 4
 #elif defined(VARIANT_WRONG_FLAGS)
-static const ilaw_state_variable first = {sizeof first, ILAW_STATE_SCALAR, "first", "1", "", 1, 256, 0};
+static const ilaw_state_variable first = {sizeof first, ILAW_KIND_SCALAR, "first", "1", "", 1, 256, 0};
 #define STATE_SIZE 4
 #endif
 #ifdef STATE_SIZE
-static const ilaw_state_variable second = {sizeof second, ILAW_STATE_HISTORY, "second", "1", "", 3, 0, 0};
+static const ilaw_state_variable second = {sizeof second, ILAW_KIND_HISTORY, "second", "1", "", 3, 0, 0};
 static const ilaw_state_variable* const state_variables[] = {&first, &second};
 #endif
 #ifdef VARIANT_WRONG_PER_NODE
@@ -183,19 +183,18 @@ static ilaw_result ILAW_CALL nothing(const ilaw_instance* instance, const ilaw_b
 #define MAXIMUM DBL_MAX
 #endif
 static const char* const axes[] = {"time", "slip_speed"};
-static const ilaw_parameter parameter = {
-    .struct_size = sizeof(ilaw_parameter),
-    .kind = ILAW_PARAMETER_NUMBER,
-    .name = "strength",
-    .symbol = "s",
-    .unit = "1",
-    .doc = "Nothing.",
-    .minimum = 0.0,
-    .maximum = MAXIMUM,
-    .default_value = DEFAULT,
-    .flags = ILAW_PARAMETER_ALLOWS_PER_NODE | ILAW_PARAMETER_ALLOWS_INFINITY,
-    .axes = axes,
-    .axis_count = 2};
+static const ilaw_parameter parameter = {.struct_size = sizeof(ilaw_parameter),
+                                         .kind = ILAW_KIND_NUMBER,
+                                         .name = "strength",
+                                         .symbol = "s",
+                                         .unit = "1",
+                                         .doc = "Nothing.",
+                                         .minimum = 0.0,
+                                         .maximum = MAXIMUM,
+                                         .default_value = DEFAULT,
+                                         .flags = ILAW_FLAG_ALLOWS_PER_NODE | ILAW_FLAG_ALLOWS_INFINITY,
+                                         .axes = axes,
+                                         .axis_count = 2};
 static const ilaw_parameter* const parameters[] = {&parameter};
 
 /* The law as a newer minor version would extend it. */

@@ -21,13 +21,13 @@ class state_member {
  public:
   constexpr state_member() = default;
   constexpr state_member(double State::*member) : scalar_(member) {}
-  constexpr state_member(vector<double> State::*member) : vector_(member), kind_(ILAW_STATE_VECTOR) {}
+  constexpr state_member(vector<double> State::*member) : vector_(member), kind_(ILAW_KIND_VECTOR) {}
   constexpr state_member(vector<double> State::*member, double vector<double>::*component)
       : vector_(member),
         component_(component),
-        kind_(component == &vector<double>::n ? ILAW_STATE_SCALAR : ILAW_STATE_HISTORY) {}
+        kind_(component == &vector<double>::n ? ILAW_KIND_SCALAR : ILAW_KIND_HISTORY) {}
   constexpr state_member(tangential_vector<double> State::*member)
-      : tangential_(member), kind_(ILAW_STATE_TANGENTIAL) {}
+      : tangential_(member), kind_(ILAW_KIND_TANGENTIAL) {}
   template <class Other>
   constexpr state_member(Other State::*) {
     static_assert(std::is_same_v<Other, double>,
@@ -37,11 +37,11 @@ class state_member {
   constexpr bool is_given() const { return scalar_ || vector_ || tangential_; }
   constexpr std::uint32_t kind() const { return kind_; }
   constexpr int numbers() const {  // in struct state
-    return kind_ == ILAW_STATE_VECTOR ? 3 : (kind_ == ILAW_STATE_TANGENTIAL ? 2 : 1);
+    return kind_ == ILAW_KIND_VECTOR ? 3 : (kind_ == ILAW_KIND_TANGENTIAL ? 2 : 1);
   }
   constexpr int components(int dimension) const {  // in the host's state
-    if (kind_ == ILAW_STATE_TANGENTIAL) return dimension - 1;
-    return kind_ == ILAW_STATE_VECTOR ? dimension : 1;
+    if (kind_ == ILAW_KIND_TANGENTIAL) return dimension - 1;
+    return kind_ == ILAW_KIND_VECTOR ? dimension : 1;
   }
 
   // Which number of struct state is its first one: the one that changes with it.
@@ -65,7 +65,7 @@ class state_member {
   vector<double> State::*vector_ = nullptr;
   double vector<double>::*component_ = nullptr;
   tangential_vector<double> State::*tangential_ = nullptr;
-  std::uint32_t kind_ = ILAW_STATE_SCALAR;
+  std::uint32_t kind_ = ILAW_KIND_SCALAR;
 };
 
 template <class State>
@@ -118,7 +118,7 @@ template <class Law>
 constexpr bool has_vector_state() {
   if constexpr (has_state<Law>)
     for (const auto& v : Law::state_variables)
-      if (v.member.kind() != ILAW_STATE_SCALAR) return true;
+      if (v.member.kind() != ILAW_KIND_SCALAR) return true;
   return false;
 }
 

@@ -22,8 +22,8 @@ constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
   const bool is_choice = p.choices.count > 0, varies = p.member.may_vary(),
              has_tables = varies || p.member.is_grid();
   return {.struct_size = sizeof(ilaw_parameter),
-          .kind = static_cast<ilaw_kind>(
-              is_choice ? ILAW_PARAMETER_CHOICE : (p.whole ? ILAW_PARAMETER_COUNT : ILAW_PARAMETER_NUMBER)),
+          .kind = static_cast<ilaw_kind>(is_choice ? ILAW_KIND_CHOICE
+                                                   : (p.whole ? ILAW_KIND_INTEGER : ILAW_KIND_NUMBER)),
           .name = p.name,
           .symbol = p.symbol,
           .unit = p.unit,
@@ -31,12 +31,11 @@ constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
           .minimum = is_choice ? 0.0 : p.minimum,
           .maximum = is_choice ? p.choices.count - 1.0 : p.maximum,
           .default_value = p.default_value,
-          .flags = flag_if(p.required, ILAW_PARAMETER_IS_REQUIRED) |
-                   flag_if(p.minimum_excluded, ILAW_PARAMETER_EXCLUDES_MINIMUM) |
-                   flag_if(p.infinity_allowed, ILAW_PARAMETER_ALLOWS_INFINITY) |
-                   flag_if(varies, ILAW_PARAMETER_ALLOWS_PER_NODE) |
-                   flag_if(p.is_field, ILAW_PARAMETER_IS_FIELD) |
-                   flag_if(p.needs_spins, ILAW_PARAMETER_NEEDS_SPINS),
+          .flags = flag_if(p.required, ILAW_FLAG_REQUIRED) |
+                   flag_if(p.minimum_excluded, ILAW_FLAG_EXCLUDES_MINIMUM) |
+                   flag_if(p.infinity_allowed, ILAW_FLAG_ALLOWS_INFINITY) |
+                   flag_if(varies, ILAW_FLAG_ALLOWS_PER_NODE) | flag_if(p.is_field, ILAW_FLAG_FIELD) |
+                   flag_if(p.needs_spins, ILAW_FLAG_NEEDS_SPINS),
           .choice_count = p.choices.count,
           .choices = p.choices.values,
           .axes = has_tables ? p.axes.values : nullptr,
@@ -59,7 +58,7 @@ constexpr ilaw_state_variable abi_state_variable(const Text& v, std::uint32_t ki
           .unit = v.unit,
           .doc = v.doc,
           .count = count,
-          .flags = flag_if(v.internal, ILAW_VARIABLE_INTERNAL),
+          .flags = flag_if(v.internal, ILAW_FLAG_INTERNAL),
           .reserved = 0};
 }
 template <class Law>
@@ -78,7 +77,7 @@ constexpr auto abi_state_variables(int dimension, std::uint64_t history_size, bo
           v, v.member.kind(),
           remembers ? static_cast<std::uint64_t>(v.member.components(dimension)) : std::uint64_t{0});
   if constexpr (has_history<Law>)
-    result[i] = abi_state_variable(Law::history, ILAW_STATE_HISTORY, history_size);
+    result[i] = abi_state_variable(Law::history, ILAW_KIND_HISTORY, history_size);
   return result;
 }
 

@@ -164,14 +164,14 @@ class instance_builder {
                           "parameter '%s' needs spins, form %u of H has none: expected 16 (transverse_spin)",
                           a.name, made_.delassus_form);
     const ilaw_parameter& p = description_type::parameters[i];
-    if (a.kind == ILAW_VALUE_TABLE && p.axis_count > 0) return keep_table(p, i, a);
-    if (a.kind == ILAW_VALUE_PER_NODE && (p.flags & ILAW_PARAMETER_ALLOWS_PER_NODE)) {
+    if (a.kind == ILAW_KIND_VALUE_TABLE && p.axis_count > 0) return keep_table(p, i, a);
+    if (a.kind == ILAW_KIND_VALUE_PER_NODE && (p.flags & ILAW_FLAG_ALLOWS_PER_NODE)) {
       made_.per_node_parameters[made_.per_node_count] = static_cast<int>(i);
       made_.per_node_names[made_.per_node_count++] = p.name;
       return ILAW_OK;
     }
     double value = 0.0;
-    const auto read = p.kind == ILAW_PARAMETER_CHOICE ? read_choice : read_number;
+    const auto read = p.kind == ILAW_KIND_CHOICE ? read_choice : read_number;
     const ilaw_result code = read(p, a, value, text_);
     Law::parameters[i].member.set(made_.law, value, made_.tables[i]);
     return code;
@@ -217,7 +217,7 @@ class instance_builder {
       if (Law::parameters[i].required && !given_[i]) {
         const ilaw_parameter& p = description_type::parameters[i];
         text_.refuse(ILAW_INVALID_PARAMETER, "parameter '%s' is missing: expected ", p.name);
-        if (p.kind == ILAW_PARAMETER_CHOICE) {
+        if (p.kind == ILAW_KIND_CHOICE) {
           text_.add("one of ");
           add_choices(text_, p);
         } else {
@@ -320,7 +320,7 @@ class instance_builder {
     made_.carries_frame = made_.frame == ILAW_FRAME_GLOBAL && made_.dimension == 3 && !made_.has_tangent &&
                           (made_.history_size > 0 || (remembers && has_vector_state<Law>()));
     if (made_.carries_frame)
-      for (const history_card& v : frame_variables) append(abi_state_variable(v, ILAW_STATE_AXIS, 3));
+      for (const history_card& v : frame_variables) append(abi_state_variable(v, ILAW_KIND_AXIS, 3));
     made_.states = remembers ? state_numbers<Law> : 0;
     made_.state_entries = state_entries<Law>[made_.dimension].data();
     made_.frame_offset = static_cast<std::int64_t>(made_.state_size) - (made_.carries_frame ? frame_size : 0);

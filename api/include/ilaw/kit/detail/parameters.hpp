@@ -47,14 +47,14 @@ class message {
 };
 
 inline bool in_range(const ilaw_parameter& p, double value) {
-  return parameter_range(p.minimum, p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM, p.maximum,
-                         p.flags & ILAW_PARAMETER_ALLOWS_INFINITY)
+  return parameter_range(p.minimum, p.flags & ILAW_FLAG_EXCLUDES_MINIMUM, p.maximum,
+                         p.flags & ILAW_FLAG_ALLOWS_INFINITY)
       .has(value);
 }
 
 inline void add_range(message& text, const ilaw_parameter& p) {
-  text.add("%s%g, ", p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM ? "(" : "[", p.minimum);
-  if (p.flags & ILAW_PARAMETER_ALLOWS_INFINITY)
+  text.add("%s%g, ", p.flags & ILAW_FLAG_EXCLUDES_MINIMUM ? "(" : "[", p.minimum);
+  if (p.flags & ILAW_FLAG_ALLOWS_INFINITY)
     text.add("inf]");
   else if (p.maximum == std::numeric_limits<double>::max())
     text.add("inf)");
@@ -76,7 +76,7 @@ inline void add_number(message& text, double value) {
 }
 
 inline void add_value(message& text, const ilaw_parameter& p, double value) {
-  if (p.kind == ILAW_PARAMETER_CHOICE)
+  if (p.kind == ILAW_KIND_CHOICE)
     text.add("\"%s\"", p.choices[static_cast<std::uint32_t>(value)]);
   else
     add_number(text, value);
@@ -84,18 +84,18 @@ inline void add_value(message& text, const ilaw_parameter& p, double value) {
 
 // Checks one number against the range of its parameter.
 inline ilaw_result check_number(const ilaw_parameter& p, double value, message& text) {
-  const bool whole = p.kind != ILAW_PARAMETER_COUNT || value == __builtin_floor(value);
+  const bool whole = p.kind != ILAW_KIND_INTEGER || value == __builtin_floor(value);
   if (in_range(p, value) && whole) return ILAW_OK;
   const ilaw_result code = text.refuse(ILAW_INVALID_PARAMETER, "parameter '%s' = ", p.name);
   add_number(text, value);
-  text.add(" is not allowed: expected a %snumber in ", p.kind == ILAW_PARAMETER_COUNT ? "whole " : "");
+  text.add(" is not allowed: expected a %snumber in ", p.kind == ILAW_KIND_INTEGER ? "whole " : "");
   add_range(text, p);
   return code;
 }
 
 inline ilaw_result read_choice(const ilaw_parameter& p, const ilaw_argument& a, double& value,
                                message& text) {
-  const bool is_text = a.kind == ILAW_VALUE_TEXT && a.text;
+  const bool is_text = a.kind == ILAW_KIND_VALUE_TEXT && a.text;
   for (std::uint32_t i = 0; is_text && i < p.choice_count; ++i)
     if (std::strcmp(p.choices[i], a.text) == 0) {
       value = i;
@@ -104,7 +104,7 @@ inline ilaw_result read_choice(const ilaw_parameter& p, const ilaw_argument& a, 
   const ilaw_result code = text.refuse(ILAW_INVALID_PARAMETER, "parameter '%s' = ", p.name);
   if (is_text)
     text.add("\"%s\"", a.text);
-  else if (a.kind == ILAW_VALUE_NUMBER)
+  else if (a.kind == ILAW_KIND_VALUE_NUMBER)
     add_number(text, a.number);
   else
     text.add("a table or array");
@@ -115,17 +115,17 @@ inline ilaw_result read_choice(const ilaw_parameter& p, const ilaw_argument& a, 
 
 inline ilaw_result read_number(const ilaw_parameter& p, const ilaw_argument& a, double& value,
                                message& text) {
-  if (a.kind == ILAW_VALUE_NUMBER) {
+  if (a.kind == ILAW_KIND_VALUE_NUMBER) {
     value = a.number;
     return check_number(p, value, text);
   }
-  const char* given = a.kind == ILAW_VALUE_TEXT       ? "a text"
-                      : a.kind == ILAW_VALUE_TABLE    ? "a table"
-                      : a.kind == ILAW_VALUE_PER_NODE ? "a value per node"
-                                                      : "a value of unknown kind";
+  const char* given = a.kind == ILAW_KIND_VALUE_TEXT       ? "a text"
+                      : a.kind == ILAW_KIND_VALUE_TABLE    ? "a table"
+                      : a.kind == ILAW_KIND_VALUE_PER_NODE ? "a value per node"
+                                                           : "a value of unknown kind";
   const ilaw_result code =
       text.refuse(ILAW_INVALID_PARAMETER, "parameter '%s' was given as %s", p.name, given);
-  if (a.kind == ILAW_VALUE_TEXT) text.add(" (\"%s\")", a.text ? a.text : "");
+  if (a.kind == ILAW_KIND_VALUE_TEXT) text.add(" (\"%s\")", a.text ? a.text : "");
   text.add(": expected a number in ");
   add_range(text, p);
   return code;
