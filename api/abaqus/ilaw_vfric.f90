@@ -27,7 +27,8 @@ contains
     type(friction_law), intent(out) :: law
     character(*), intent(out) :: message
     integer(c_int32_t), parameter :: given = &
-      ior(ior(ILAW_INPUT_GAP, ILAW_INPUT_V_PREVIOUS), ior(ILAW_INPUT_NORMAL, ILAW_INPUT_AREA))
+      ior(ior(ILAW_INPUT_GAP, ior(ILAW_INPUT_V_PREVIOUS, ILAW_INPUT_V_SMOOTH)), &
+          ior(ILAW_INPUT_NORMAL, ILAW_INPUT_AREA))
     type(c_ptr) :: library
     type(ilaw_setup) :: setup
     type(ilaw_instance_info) :: info

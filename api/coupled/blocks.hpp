@@ -32,7 +32,7 @@ struct Layout {
   int delassus = 3 + 4 * width;
   int length = -1;  // with moments: a spin times it is compared with velocities
   int arm = -1, counterpart_arm = -1, weight = -1, wall = -1;
-  int gap = -1, gap_offset = -1, area = -1, v_previous = -1, tangent = -1, parameters = -1;
+  int gap = -1, gap_offset = -1, area = -1, v_smooth = -1, v_previous = -1, tangent = -1, parameters = -1;
   int state_in = -1, state_out = -1;
   int columns = 0;
   int delassus_size = 1, weight_size = 1, state_size = 0, ends = 2;

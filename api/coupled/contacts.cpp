@@ -103,8 +103,8 @@ const char* Contacts::complaint_of_law(const Bodies& bodies) {
   if (theirs_.energy.values && !(given_.law->outputs & ILAW_OUTPUT_ENERGY))
     return "energies are asked for, which the law does not give";
   const std::uint32_t read = info_.inputs | (asks_balance() ? info_.balance_inputs : 0U);
-  constexpr std::uint32_t known =
-      ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_AREA | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT;
+  constexpr std::uint32_t known = ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_AREA |
+                                  ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT | ILAW_INPUT_V_SMOOTH;
   if (read & ~known) return "the law reads an input that coupled contacts do not know";
   if ((read & ILAW_INPUT_V_PREVIOUS) && theirs_.node_count > 0 && !bodies.have_previous())
     return "the law reads v_previous, which the bodies do not have";
@@ -203,6 +203,7 @@ void Contacts::lay_out(const Bodies& bodies) {
   layout_.gap = take(theirs_.gap.values != nullptr && (read & ILAW_INPUT_GAP), 1);
   layout_.gap_offset = take(theirs_.gap_offset.values != nullptr && (read & ILAW_INPUT_GAP), 1);
   layout_.area = take(theirs_.area.values != nullptr && (read & ILAW_INPUT_AREA), 1);
+  layout_.v_smooth = take(read & ILAW_INPUT_V_SMOOTH, 3);
   layout_.v_previous = take(read & ILAW_INPUT_V_PREVIOUS, layout_.width);
   layout_.tangent = take(theirs_.tangent.values != nullptr, 3);
   layout_.parameters = take(theirs_.per_node_parameters && info_.per_node_parameter_count > 0,
@@ -412,6 +413,7 @@ std::int32_t Contacts::evaluate(const Block& block, const Call& call, ilaw_repor
   batch.delassus = ilaw::input(call.delassus, 1, static_cast<std::int64_t>(call.delassus_stride));
   batch.gap = input(layout_.gap);
   batch.gap_offset = input(layout_.gap_offset);
+  batch.v_smooth = input(layout_.v_smooth);
   batch.v_previous = input(layout_.v_previous);
   batch.area = input(layout_.area);
   batch.normal = input(layout_.normal);

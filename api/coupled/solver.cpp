@@ -124,7 +124,7 @@ const char* Solver::make_blocks(ilaw_coupled_report& report) {
 bool Solver::fill(Block& block) {
   for (std::size_t lane = 0; lane < block.count; ++lane)
     if (!problem_.group(block).fill(block, lane, order_[block.order + lane], problem_.bodies)) return false;
-  sweep_.add_previous(block);
+  sweep_.read_velocities(block);
   return true;
 }
 

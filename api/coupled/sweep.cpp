@@ -96,10 +96,16 @@ void Sweep::gather(const Block& block, double* velocity) const {
   }
 }
 
-void Sweep::add_previous(Block& block) const {
+void Sweep::read_velocities(Block& block) const {
   const Layout& layout = *block.layout;
-  if (layout.v_previous < 0) return;
   Columns velocity;
+  if (layout.v_smooth >= 0) {
+    gather(block, velocity.data());
+    for (std::size_t c = 0; c < 3; ++c)
+      std::copy_n(velocity.data() + c * max_stride, block.count,
+                  block.column(layout.v_smooth + static_cast<int>(c)));
+  }
+  if (layout.v_previous < 0) return;
   gather(block, problem_.bodies.previous(), velocity.data());
   for (std::size_t c = 0; c < static_cast<std::size_t>(layout.width); ++c)
     for (std::size_t q = 0; q < block.count; ++q)

@@ -53,8 +53,9 @@ class Sweep {
   bool wake(Blocks& blocks);
   // Velocity of each lane, and spin where it has a moment, into columns at distances of max_stride.
   void gather(const Block& block, double* velocity) const;
-  // Adds the velocities of its bodies before the step to v_previous, where the law reads it.
-  void add_previous(Block& block) const;
+  // Writes the present velocities of its contacts to v_smooth, and adds those of its bodies before the step
+  // to v_previous, where the law reads them. Before any impulse acts.
+  void read_velocities(Block& block) const;
   // H of the law times columns x, into y: columns at distances of max_stride.
   void respond(const Block& block, const double* x, std::size_t x_stride, double* y) const;
   // Adds impulses of all contacts and their moments to the sums per body.

@@ -68,7 +68,7 @@ class plane_contact {
  private:
   void describe(double h) {
     constexpr std::uint32_t given =
-        ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_NORMAL | ILAW_INPUT_AREA;
+        ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_NORMAL | ILAW_INPUT_AREA | ILAW_INPUT_V_SMOOTH;
     if ((info_.inputs | info_.balance_inputs) & ~given)
       throw std::runtime_error("the law reads an input that this code does not have");
     const std::size_t count = dofs_.size();

@@ -18,12 +18,12 @@ constexpr names dimension_names = {"", "1", "2", "3"};
 constexpr names form_names = {"scalar", "diagonal", "full", "transverse", "transverse_spin"};
 constexpr names frame_names = {"local", "global"};
 constexpr names number_names = {"double", "float"};
-constexpr names input_names = {"gap", "v_previous", "area", "normal", "tangent"};
+constexpr names input_names = {"gap", "v_previous", "area", "normal", "tangent", "v_smooth"};
 constexpr names output_names = {"velocity", "status", "energy"};
 constexpr names capability_names = {"adhere", "store_energy"};
 constexpr names permission_names = {"skip_fresh", "skip_free"};
-constexpr names parameter_flag_names = {"is_required",     "excludes_minimum", "allows_infinity",
-                                        "allows_per_node", "is_field",         "needs_spins"};
+constexpr names parameter_flag_names = {"required", "excludes_minimum", "allows_infinity", "allows_per_node",
+                                        "field",    "needs_spins"};
 constexpr names variable_flag_names = {"internal"};
 constexpr names parameter_kinds = {"number", "integer", "choice"};
 constexpr names state_kinds = {"scalar", "vector", "history", "axis", "tangential"};

@@ -47,7 +47,7 @@ std::string range_of(const json& p) {
 // How else than as a constant the value may be given.
 std::string varying(const json& p) {
   std::vector<std::string> ways;
-  if (has(p["flags"], "is_field")) ways.push_back("field");
+  if (has(p["flags"], "field")) ways.push_back("field");
   if (has(p["flags"], "allows_per_node")) ways.push_back("per_node");
   if (!p["axes"].empty()) ways.push_back("table over " + listed(p["axes"]));
   const char* condition = has(p["flags"], "needs_spins") ? "; needs spins" : "";
@@ -55,7 +55,7 @@ std::string varying(const json& p) {
 }
 
 Row row_of_parameter(const json& p) {
-  const bool required = has(p["flags"], "is_required");
+  const bool required = has(p["flags"], "required");
   return {unquoted(p["name"]), unquoted(p["unit"]),
           range_of(p),         required ? "required" : "default " + unquoted(p["default"]),
           varying(p),          unquoted(p["doc"])};

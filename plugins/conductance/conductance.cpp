@@ -18,7 +18,7 @@ struct conductance {
       .doc =
           "Frictionless contact through which heat flows with the difference of temperature, by a conductance that "
           "may grow with the pressure.",
-      .inputs = reads_gap | reads_v_previous | reads_area,
+      .inputs = reads_gap | reads_v_previous | reads_v_smooth | reads_area,
       .permissions = may_skip_fresh | may_skip_free,
       .is_isotropic = true};
 
@@ -52,7 +52,10 @@ struct conductance {
                                              .unit = "J",
                                              .doc = "Flows from the counterpart into the body in the step."}};
 
-  std::uint32_t inputs() const { return constant > 0.0 ? card.inputs : card.inputs & ~reads_area; }
+  std::uint32_t inputs() const {
+    return inputs_of_contact(constant > 0.0 ? card.inputs : card.inputs & ~reads_area, restitution,
+                             activation);
+  }
 
   template <class Node>
   status_of<V> step(Node& node) const {

@@ -17,7 +17,7 @@ struct contact {
       .doc =
           "Signorini-Moreau contact without friction: open nodes get no impulse, closed ones are pushed so that "
           "the normal velocity after the step is at least -e times the one before.",
-      .inputs = reads_gap | reads_v_previous,
+      .inputs = reads_gap | reads_v_previous | reads_v_smooth,
       .capabilities = can_store_energy,
       .permissions = may_skip_fresh | may_skip_free,
       .is_isotropic = true};
@@ -35,6 +35,7 @@ struct contact {
     V work;
   };
   static constexpr state_variable<state> state_variables[] = {waiting_work_variable(&state::work)};
+  std::uint32_t inputs() const { return inputs_of_contact(card.inputs, restitution, activation); }
   bool remembers() const { return activation == resolved; }
   std::uint32_t capabilities() const { return remembers() ? can_store_energy : 0; }
 

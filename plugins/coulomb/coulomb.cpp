@@ -27,7 +27,7 @@ struct coulomb : friction_solver<V> {
       .doc =
           "Signorini-Moreau contact with Coulomb friction: the tangential impulse stays within the friction cone, "
           "circular or elliptical, and dissipates at most. Exact for any symmetric positive definite H.",
-      .inputs = reads_gap | reads_v_previous,
+      .inputs = reads_gap | reads_v_previous | reads_v_smooth,
       .capabilities = can_store_energy,
       .permissions = may_skip_fresh | may_skip_free,
       .is_isotropic = true};
@@ -84,6 +84,7 @@ struct coulomb : friction_solver<V> {
        .doc = "Impulse that held the node in the last step over its limit; 0: it was not held.",
        .minimum = 0.0,
        .maximum = 1.0}};
+  std::uint32_t inputs() const { return inputs_of_contact(card.inputs, restitution, activation); }
   bool remembers() const { return activation == resolved; }
   std::uint32_t capabilities() const { return remembers() ? can_store_energy : 0; }
 

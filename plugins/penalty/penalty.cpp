@@ -26,7 +26,7 @@ struct penalty {
           "tangential spring that slides on the cone. Explicit as most codes have it, or locally implicit: "
           "then any stiffness, infinite too, leaves the critical time step as it is and gives back the "
           "energy of an impact, or what a coefficient of restitution leaves of it.",
-      .inputs = reads_gap | reads_v_previous,
+      .inputs = reads_gap | reads_v_previous | reads_v_smooth,
       .capabilities = can_store_energy,
       .permissions = may_skip_fresh};
 
@@ -81,7 +81,8 @@ struct penalty {
        0.0}};
 
   std::uint32_t inputs() const {
-    return reads_gap | (integration == implicitly || damping > 0.0 ? reads_v_previous : 0U);
+    if (integration == implicitly) return card.inputs;
+    return reads_gap | (damping > 0.0 ? reads_v_previous : 0U);
   }
   // A damper lets the node go before the spring is at rest: such a node is free, and may push once more.
   std::uint32_t permissions() const {

@@ -44,7 +44,7 @@ struct rate_and_state : changing_friction<rate_and_state, direct_effect, V> {
       .id = "rate_and_state",
       .title = "Contact with rate-and-state friction",
       .doc = "Dry contact whose friction depends on the slip speed and on a state of the surface. Any H.",
-      .inputs = reads_gap | reads_v_previous,
+      .inputs = reads_gap | reads_v_previous | reads_v_smooth,
       .permissions = may_skip_fresh | may_skip_free,
       .is_isotropic = true};
 
@@ -107,6 +107,8 @@ struct rate_and_state : changing_friction<rate_and_state, direct_effect, V> {
   void initialise(Node& node) const {
     node.state.theta = select(initial_state > 0.0, initial_state, critical_slip / reference_speed);
   }
+
+  std::uint32_t inputs() const { return inputs_of_contact(card.inputs, restitution, activation); }
 
   template <class Node>
   direct_effect<V> coefficient_in(const Node& node) const {

@@ -21,7 +21,7 @@ struct rolling : friction_solver<V> {
           "Contact and Coulomb friction of bodies that spin; moments resist rolling and twisting, up to a length "
           "times the normal impulse, and dissipate at most. For any H without spins, friction alone.",
       .delassus_forms = all_delassus_forms | with_spins,
-      .inputs = reads_gap | reads_v_previous,
+      .inputs = reads_gap | reads_v_previous | reads_v_smooth,
       .permissions = may_skip_fresh | may_skip_free,
       .is_isotropic = true};
 
@@ -36,6 +36,8 @@ struct rolling : friction_solver<V> {
       rolling_friction_parameter(&rolling::rolling_friction),
       twisting_friction_parameter(&rolling::twisting_friction), restitution_parameter(&rolling::restitution),
       activation_parameter(&rolling::activation)};
+
+  std::uint32_t inputs() const { return inputs_of_contact(card.inputs, restitution, activation); }
 
   template <class Node>
   status_of<V> step(Node& node) const requires is_transverse<Node> {

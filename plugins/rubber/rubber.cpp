@@ -71,7 +71,7 @@ struct rubber : changing_friction<rubber, bell, V> {
       .title = "Contact with the friction of rubber",
       .doc =
           "Friction with a peak over the slip speed, shifted by the temperature, that falls with the pressure. Any H.",
-      .inputs = reads_gap | reads_v_previous | reads_area,
+      .inputs = reads_gap | reads_v_previous | reads_v_smooth | reads_area,
       .permissions = may_skip_fresh | may_skip_free,
       .is_isotropic = true};
 
@@ -104,7 +104,10 @@ struct rubber : changing_friction<rubber, bell, V> {
       heat_partition_parameter(&rubber::heat_partition),
       wear_coefficient_parameter(&rubber::wear_coefficient)};
 
-  std::uint32_t inputs() const { return pressure_exponent > 0.0 ? card.inputs : card.inputs & ~reads_area; }
+  std::uint32_t inputs() const {
+    const std::uint32_t all = pressure_exponent > 0.0 ? card.inputs : card.inputs & ~reads_area;
+    return inputs_of_contact(all, restitution, activation);
+  }
 
   template <class Node>
   bell<V> coefficient_in(const Node& node) const {

@@ -36,7 +36,7 @@ struct slip_weakening : changing_friction<slip_weakening, weakening, V> {
       .doc =
           "Signorini-Moreau contact with Coulomb friction whose coefficient falls linearly with the slip, from static "
           "to dynamic over a critical slip. Any H.",
-      .inputs = reads_gap | reads_v_previous,
+      .inputs = reads_gap | reads_v_previous | reads_v_smooth,
       .permissions = may_skip_fresh | may_skip_free,
       .is_isotropic = true};
 
@@ -93,6 +93,8 @@ struct slip_weakening : changing_friction<slip_weakening, weakening, V> {
   void initialise(Node& node) const {
     node.state.slip = initial_slip;
   }
+
+  std::uint32_t inputs() const { return inputs_of_contact(card.inputs, restitution, activation); }
 
   // At the mean slip of the step, s^- + h (|v_T^-| + v)/4.
   template <class Node>

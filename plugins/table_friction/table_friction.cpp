@@ -82,7 +82,7 @@ struct table_friction : changing_friction<table_friction, conditions, V> {
       .doc =
           "Signorini-Moreau contact with Coulomb friction whose coefficient is a table over slip speed, pressure, "
           "temperature and time. Any H.",
-      .inputs = reads_gap | reads_v_previous | reads_area,
+      .inputs = reads_gap | reads_v_previous | reads_v_smooth | reads_area,
       .permissions = may_skip_fresh | may_skip_free,
       .is_isotropic = true};
 
@@ -110,7 +110,8 @@ struct table_friction : changing_friction<table_friction, conditions, V> {
       wear_coefficient_parameter(&table_friction::wear_coefficient)};
 
   std::uint32_t inputs() const {
-    return friction.along(1).count > 0 ? card.inputs : card.inputs & ~reads_area;
+    const std::uint32_t all = friction.along(1).count > 0 ? card.inputs : card.inputs & ~reads_area;
+    return inputs_of_contact(all, restitution, activation);
   }
 
   template <class Node>

@@ -221,6 +221,7 @@ class Batch(NotCopied):
     Inputs, of the type `Interface.dtype`, read where they are at every call (so change them in place:
     `v[:] = ...`, `v += ...`):
       v_free (n, d) [m/s]      velocity without the interface, relative to the obstacle
+      v_smooth (n, d) [m/s]    optional, where contacts share bodies: velocity without any impulse of the step
       delassus (n, k) [1/kg]   H: k = 1 (scalar), d, d(d+1)/2 (full), 2 (transverse) or 5 (transverse_spin)
       gap (n,) [m]             signed distance at the time of the step; positive is open
       gap_offset (n,) [m]      subtracted from the gap
@@ -258,6 +259,7 @@ class Batch(NotCopied):
         *,
         v_free: NDArray[Any],
         delassus: Any,
+        v_smooth: Any = None,
         gap: Any = None,
         gap_offset: Any = None,
         v_previous: Any = None,
@@ -285,8 +287,8 @@ class Batch(NotCopied):
         self.node_count = len(v_free)
         self._check_dimension(v_free)
         self._inputs: dict[str, NDArray[Any]] = {}
-        vectors = {"v_free": v_free, "v_previous": v_previous, "normal": normal, "tangent": tangent}
-        for name, value in vectors.items():
+        vectors = {"v_free": v_free, "v_smooth": v_smooth, "v_previous": v_previous}
+        for name, value in {**vectors, "normal": normal, "tangent": tangent}.items():
             self._read(name, value, d)
         for name, value in {"spin_free": spin_free, "spin_previous": spin_previous}.items():
             self._read(name, value, 3)
@@ -378,7 +380,7 @@ class Batch(NotCopied):
     def _check_complete(self, needed: int) -> None:
         for member in _abi.Input:
             name = member.name.lower()
-            if needed & member and name not in self._inputs:
+            if needed & member & ~_abi.Input.V_SMOOTH and name not in self._inputs:
                 raise InvalidArgument(f"{self.interface.law.id} reads {name}: give it to batch()")
 
     @property

@@ -29,8 +29,9 @@ ILAW_KIT_INLINE contact_condition<V> contact_leaving_at(std::type_identity_t<V> 
 
 // moreau: where the gap is closed, v_N + e v_N^- >= 0 (Moreau 1988).
 // predictive: where the next gap would not be positive, v_N >= -g/h, so that it is never negative. An impact
-// with restitution leaves with -e v_N^- at once, which is larger. A gap that is negative already must not
-// grow; pushing it out would create energy.
+// with restitution leaves with -e v_N^- at once, which is larger; whether there is one is decided without the
+// impulses of other contacts (contact.md, "Several contacts at one body"). A gap that is negative already
+// must not grow; pushing it out would create energy.
 template <class Node>
 ILAW_KIT_INLINE auto contact_at(const Node& node, number_of<Node> restitution, double activation) {
   using V = number_of<Node>;
@@ -38,10 +39,23 @@ ILAW_KIT_INLINE auto contact_at(const Node& node, number_of<Node> restitution, d
   const bool predicts = activation == predictive;
   const double step = predicts ? node.position_step : 0.0, rate = predicts ? -node.per_position_step : 0.0;
   const V open = positive_part(node.gap), arrival = open * rate;
-  const V slack = open + step * node.v_free.n;  // next_gap to the last bit where the gap is positive
-  const V rebound = -restitution * node.v_previous.n;
+  V slack = open + step * node.v_free.n;  // next_gap to the last bit where the gap is positive
+  V rebound = -restitution * node.v_previous.n;
+  if constexpr (has_smooth<Node>) {
+    if (node.is_coupled) {
+      const V smooth = open + step * node.v_smooth.n;
+      rebound = zero_unless(smooth <= 0.0, rebound);
+      slack = smaller(smooth, slack);
+    }
+  }
   return contact_leaving_at<V>(select(rebound > 0.0, rebound, arrival), slack, node.v_free.n,
                                node.v_previous.n);
+}
+
+// What a contact reads of inputs: v_smooth only where an impact may leave with a rebound.
+ILAW_KIT_INLINE constexpr std::uint32_t inputs_of_contact(std::uint32_t inputs, double restitution,
+                                                          double activation) {
+  return restitution > 0.0 && activation != moreau ? inputs : inputs & ~reads_v_smooth;
 }
 
 template <class Law>

@@ -49,7 +49,7 @@
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 inline constexpr std::uint32_t reads_gap = ILAW_INPUT_GAP, reads_v_previous = ILAW_INPUT_V_PREVIOUS,
-                               reads_area = ILAW_INPUT_AREA;
+                               reads_area = ILAW_INPUT_AREA, reads_v_smooth = ILAW_INPUT_V_SMOOTH;
 inline constexpr std::uint32_t can_adhere = ILAW_CAN_ADHERE, can_store_energy = ILAW_CAN_STORE_ENERGY;
 inline constexpr std::uint32_t may_skip_fresh = ILAW_MAY_SKIP_FRESH, may_skip_free = ILAW_MAY_SKIP_FREE;
 inline constexpr std::uint32_t all_dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3;

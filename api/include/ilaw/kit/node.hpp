@@ -66,12 +66,14 @@ struct undeclared_input {
     static_assert(Input != reads_area, "the law reads area: write reads_area among .inputs of its card");
     static_assert(Input != reads_v_previous,
                   "the law reads v_previous: write reads_v_previous among .inputs of its card");
+    static_assert(Input != reads_v_smooth,
+                  "the law reads v_smooth: write reads_v_smooth among .inputs of its card");
     return 0.0;
   }
 };
-template <class Vector>
+template <class Vector, std::uint32_t Input>
 struct undeclared_vector {
-  undeclared_input<typename Vector::number, reads_v_previous> n, t1, t2;
+  undeclared_input<typename Vector::number, Input> n, t1, t2;
 
   operator Vector() const { return {n}; }
   typename Vector::number tangential_length() const { return n; }
@@ -94,9 +96,13 @@ struct node {
 
   const double time, velocity_step, position_step, per_position_step;
   const bool wants_energy;  // whether what follows "stored" below is asked for, or an amount
+  const bool is_coupled;    // the host gives v_smooth
   const prepared_t<Law>& prepared;
   const Vector v_free;  // relative velocity without interface
-  const input_t<Law, reads_v_previous, Vector, undeclared_vector<Vector>>
+  // Without the impulse of any contact in the step; v_free where the host gives none.
+  static constexpr bool has_smooth = reads<Law>(reads_v_smooth);
+  const input_t<Law, reads_v_smooth, Vector, undeclared_vector<Vector, reads_v_smooth>> v_smooth;
+  const input_t<Law, reads_v_previous, Vector, undeclared_vector<Vector, reads_v_previous>>
       v_previous;  // of the half step before
   const Delassus delassus;
   const input_t<Law, reads_gap, V, undeclared_input<V, reads_gap>> gap;  // offset already taken off
@@ -154,10 +160,27 @@ struct asked {
   status_of<V> status;
 };
 
-// See ilaw.h: what holds out of reach, to the last bit.
+// Whether the law is given the velocity without the impulse of any contact in the step.
+template <class Node>
+inline constexpr bool has_smooth = requires {
+  requires Node::has_smooth;
+};
+
+template <class Node>
+ILAW_KIT_INLINE auto smooth_velocity(const Node& node) {
+  if constexpr (has_smooth<Node>)
+    return node.v_smooth;
+  else
+    return node.v_free;
+}
+
+// See ilaw.h: out of reach, to the last bit. The smaller of the next gaps with v_free and with v_smooth.
 template <class Node>
 ILAW_KIT_INLINE auto next_gap(const Node& node) {
-  return node.gap + node.position_step * node.v_free.n;
+  auto next = node.gap + node.position_step * node.v_free.n;
+  if constexpr (has_smooth<Node>)
+    if (node.is_coupled) next = smaller(node.gap + node.position_step * node.v_smooth.n, next);
+  return next;
 }
 template <class Node>
 ILAW_KIT_INLINE auto is_out_of_reach(const Node& node) {

@@ -29,39 +29,69 @@ constexpr state_variable<State> waiting_work_variable(double State::*member) {
           .doc = "Work that the impact of the last step leaves to the impulse of the next one; 0: none."};
 }
 
-// The impulse of a step, and the work W that the impact leaves to the impulse of the next step; 0: none.
+// The impulse of a step, and the work W that the impact leaves to the impulse of the next step; 0: none. W >
+// 0 is energy that this contact stores; W < 0 is still to be dissipated, as if the contact were alone at its
+// bodies.
 // For friction: the gain that the last impact left to this step, and the impact of this step, if it bounces,
-// at the part `instant` of the step with the speed `speed`.
+// at the part `instant` of the step; this contact stops the part `speed` of the approach.
 template <class V>
 struct resolved_impact {
   V impulse, work, rebound, instant, speed;
   mask_of<V> lands, bounces;
 };
 
+// The part of the mass 1/H that a contact stops: its own gain over the one that all contacts of the step give
+// it, of which the impulses of others gave `others`. 1 where the contact is alone, or where others press on
+// it.
+template <class V>
+ILAW_KIT_INLINE V part_of_impact(V gain, V others) {
+  return select((gain > 0.0) & (others > 0.0), gain / (gain + others), V(1.0));
+}
+
 // Marks an impact that has no work left to do, but a rebound.
 inline constexpr double no_work = -std::numeric_limits<double>::denorm_min();
 
-// gain: v_N - v_free,N. mean + gain/2 is the mean velocity of the step, along which the impulse works.
+// What is left of a gain where the impulses of others give `others` of it.
+template <class V>
+ILAW_KIT_INLINE V rest_of_gain(V gain, V others) {
+  return zero_unless(gain > 0.0, positive_part(gain - others));
+}
+
+// (v_n)^2 = mean^2 + 2 H W, the velocity with which the rebound of the last step leaves, less the mean.
+template <class V>
+ILAW_KIT_INLINE V gain_of_work(V mean, V twice) {
+  const V speed = square_root(positive_part(mean * mean + twice));
+  const mask_of<V> leaves = mean > 0.0;
+  return positive_part(select(leaves, twice, speed - mean) / select(leaves, speed + mean, V(1.0)));
+}
+
+// gain: v_N - v_free,N. mean + gain/2 is the mean velocity of the step, along which the impulse works. The
+// impact is found on the motion without the impulses of this step, as if the contact were alone: `alone`.
 template <class Node>
 ILAW_KIT_INLINE auto resolve_impact(const Node& node, number_of<Node> restitution, number_of<Node> work) {
   using V = number_of<Node>;
   const V inverse_mass = node.delassus.normal(), free = node.v_free.n, before = node.v_previous.n;
-  const V mean = 0.5 * (before + free), change = free - before;
+  const V alone = smooth_velocity(node).n;
+  const V mean = 0.5 * (before + free), mean_alone = 0.5 * (before + alone), change = alone - before;
 
-  // (v_n)^2 = mean^2 + 2 H W, the rebound of the last step; no more than it may gain, and no pull.
-  V gain = 0.0, most = positive_part(-(before + free));
+  // The rebound of the last step; no more than it may gain, and no pull.
+  V gain = 0.0, gain_alone = 0.0, most = positive_part(-(before + free));
   const mask_of<V> rebounds = work != 0.0;
   if (any(rebounds)) {
-    const V twice = 2.0 * (inverse_mass * work), speed = square_root(positive_part(mean * mean + twice));
-    const mask_of<V> leaves = mean > 0.0;
-    const V raised = select(leaves, twice, speed - mean) / select(leaves, speed + mean, V(1.0));
-    gain = zero_unless(rebounds, positive_part(raised));
+    const V twice = 2.0 * (inverse_mass * work);
+    gain = gain_of_work(mean, twice);
+    gain_alone = gain_of_work(mean_alone, twice);
+    // The same velocity, whatever the impulses of other contacts: equal contacts share what is to be
+    // dissipated.
+    gain = zero_unless(rebounds, select(work > 0.0, gain, rest_of_gain(gain_alone, free - alone)));
+    gain_alone = zero_unless(rebounds, gain_alone);
     most = select(work > 0.0, gain, most);
   }
 
   // gamma + v_n s + change s^2/2 = 0: the impact at the part s of the step, with the velocity -speed.
   const V open = positive_part(node.gap);
-  const mask_of<V> hits = open + node.position_step * (free + gain) <= 0.0;
+  const mask_of<V> strikes = open + node.position_step * (alone + gain_alone) <= 0.0,
+                   hits = strikes | (open + node.position_step * (free + gain) <= 0.0);
   resolved_impact<V> found{.impulse = 0.0,
                            .work = 0.0,
                            .rebound = gain,
@@ -70,21 +100,28 @@ ILAW_KIT_INLINE auto resolve_impact(const Node& node, number_of<Node> restitutio
                            .lands = hits,
                            .bounces = hits};
   if (any(hits)) {
-    const V gamma = open * node.per_position_step, now = mean + gain;
+    const V gamma = open * node.per_position_step, now = mean_alone + gain_alone;
     const V square = positive_part(now * now - 2.0 * change * gamma), speed = square_root(square);
     const mask_of<V> approaches = now <= 0.0;
     const V s = select(approaches, 2.0 * gamma, speed + now) / select(approaches, speed - now, -change);
     const V rest = 1.0 - s, leaving = restitution * speed, rise = leaving + 0.5 * change * rest;
-    const mask_of<V> bounces = (leaving > 0.0) & (rise > 0.0);
+    const mask_of<V> bounces = strikes & (leaving > 0.0) & (rise > 0.0);
     const V target = select(bounces, rest * rise - gamma, -gamma);
     const V needed = positive_part(smaller(target - free, most));
     const V loss = 0.5 * (1.0 - restitution * restitution) * square;
-    const V after = work - (loss + needed * (mean + 0.5 * needed)) / inverse_mass;
-    found.work = zero_unless(hits & bounces & (needed > 0.0),
-                             select((after == 0.0) & (needed < most), V(no_work), after));
+    const V share = part_of_impact(needed, free - alone), all = needed + (free - alone);
+    const V own = work - (share * loss + needed * (mean + 0.5 * needed)) / inverse_mass,
+            left = work - (loss + all * (mean_alone + 0.5 * all)) / inverse_mass;
+    const V after = select(left < 0.0, left, own);
+    // Only the impulses of others close it: it arrives, and keeps e^2 of what that took for the next step.
+    const V taken = positive_part(work - needed * (mean + 0.5 * needed) / inverse_mass);
+    const V left_by_impact =
+                zero_unless(bounces, select((after == 0.0) & (needed < most), V(no_work), after)),
+            left_by_arrival = restitution * restitution * taken;
+    found.work = zero_unless(hits & (needed > 0.0), select(strikes, left_by_impact, left_by_arrival));
     found.bounces = hits & bounces;
     found.instant = zero_unless(found.bounces, s);
-    found.speed = zero_unless(found.bounces, speed);
+    found.speed = zero_unless(found.bounces, share * speed);
     gain = select(hits, needed, gain);
   }
   found.impulse = gain / inverse_mass;
@@ -143,7 +180,7 @@ ILAW_KIT_INLINE auto rub_at_impact(const Node& node, const resolved_impact<V>& i
                                    V friction) {
   using Vector = std::remove_cvref_t<decltype(node.v_free)>;
   const V h_n = node.delassus.normal(), h_t = node.delassus.tangential();
-  const Vector motion = node.v_previous + node.v_free, change = node.v_free - node.v_previous;
+  const Vector motion = node.v_previous + node.v_free, change = smooth_velocity(node) - node.v_previous;
   const auto rub_on = [&](V normal, const Vector& q) ILAW_KIT_LAMBDA {
     return rub(h_t, normal, q.scaled_tangential_length(), V(0.0), V(0.0), friction);
   };

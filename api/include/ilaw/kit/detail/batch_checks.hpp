@@ -101,6 +101,7 @@ inline const char* other_numbers(const instance_base& made, const ilaw_batch& b,
   bool is_bad =
       other(b.v_free) || other(b.delassus) || other(b.impulse) || other(b.velocity) || other(b.energy);
   is_bad = is_bad || ((read & ILAW_INPUT_GAP) && (other(b.gap) || other(b.gap_offset)));
+  is_bad = is_bad || ((read & ILAW_INPUT_V_SMOOTH) && other(b.v_smooth));
   is_bad = is_bad || ((read & ILAW_INPUT_V_PREVIOUS) && other(b.v_previous));
   if (made.has_spins())
     is_bad = is_bad || other(b.spin_free) || other(b.moment) || other(b.spin) ||
@@ -178,7 +179,7 @@ inline const char* colliding_output(const instance_base& made, const ilaw_batch&
   return colliding_state(made, b);
 }
 
-// The same of what a form of H with spins needs; the batch of a host of ABI 1.0 ends before it.
+// The same of what a form of H with spins needs.
 inline const char* missing_spins(const instance_base& made, const ilaw_batch& b, std::uint32_t needed) {
   if (!made.has_spins()) return nullptr;
   if (is_absent(made, b.spin_free)) return "spin_free is null";

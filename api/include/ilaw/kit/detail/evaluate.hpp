@@ -145,6 +145,7 @@ inline constexpr const char* reason_texts[] = {
     "the normal is not a unit vector",
     "the tangent is not a unit vector orthogonal to the normal",
     "v_free is not finite",
+    "v_smooth is not finite",
     "H is not finite and positive definite",
     "the gap is not finite",
     "v_previous is not finite",

@@ -92,6 +92,14 @@ struct kernel {
     if constexpr (frame_type::turns)
       if (frame.turns_now()) v_free.n = v_free.n + 0.0;
     const auto turned = [&](axis<V> a) ILAW_KIT_LAMBDA { return frame.to_local(a); };
+    vector_type v_smooth = v_free;
+    if constexpr (reads<Law>(reads_v_smooth)) {
+      if (b.v_smooth.at) {
+        axis<V> smooth;
+        load_vector(smooth, b.v_smooth, i, numbers);
+        v_smooth = turned(smooth);
+      }
+    }
     if constexpr (reads<Law>(reads_v_previous))
       load_previous(v_previous, known, b, b.v_previous, turned, i, numbers);
     std::conditional_t<spins, axis<V>, spinless> free_spin;
@@ -120,6 +128,8 @@ struct kernel {
     else
       c.finite(numbers, reason_v_free);
     if (!is_checked) c.require(h.is_definite(), reason_delassus);
+    if constexpr (reads<Law>(reads_v_smooth) && (careful || frame_type::turns))
+      c.finite_vector(v_smooth, reason_v_smooth, true);
     if constexpr (reads<Law>(reads_gap)) c.finite(gap, reason_gap);
     if constexpr (reads<Law>(reads_v_previous) && (careful || frame_type::turns))
       c.finite_vector(v_previous, reason_v_previous, true);
@@ -142,8 +152,10 @@ struct kernel {
                      .position_step = b.step.position_step,
                      .per_position_step = b.step.per_position_step,
                      .wants_energy = wants_energy(b),
+                     .is_coupled = is_coupled(b),
                      .prepared = prepared,
                      .v_free = v_free,
+                     .v_smooth = declared<reads_v_smooth>(v_smooth),
                      .v_previous = declared<reads_v_previous>(v_previous),
                      .delassus = h,
                      .gap = declared<reads_gap>(gap),
@@ -155,8 +167,8 @@ struct kernel {
   ILAW_KIT_INLINE static auto declared(T value) {
     if constexpr (reads<Law>(Input))
       return value;
-    else if constexpr (Input == reads_v_previous)
-      return undeclared_vector<vector_type>{};
+    else if constexpr (std::is_same_v<T, vector_type>)
+      return undeclared_vector<vector_type, Input>{};
     else
       return undeclared_input<V, Input>{};
   }
@@ -231,6 +243,9 @@ struct kernel {
 
   // ---- store
 
+  ILAW_KIT_INLINE static bool is_coupled(const view_type& b) {
+    return reads<Law>(reads_v_smooth) && b.v_smooth.at;
+  }
   ILAW_KIT_INLINE static bool wants_energy(const view_type& b) {
     if constexpr (amount_count < Law >> 0)
       return b.has_balance;

@@ -296,12 +296,13 @@ template <class Law>
 constexpr bool passes_members() {
   bool passes = true;
   using Wide = law_on_t<Law, pack>;
-  constexpr std::uint32_t inputs = reads_gap | reads_v_previous | reads_area;
+  constexpr std::uint32_t inputs = reads_gap | reads_v_previous | reads_v_smooth | reads_area;
 
   ILAW_KIT_CHECK(Law::card.id && Law::card.title && Law::card.doc,
                  "the card of a law needs .id, .title and .doc")
-  ILAW_KIT_CHECK((Law::card.inputs & ~inputs) == 0,
-                 ".inputs of the card are reads_gap, reads_v_previous and reads_area, joined by |")
+  ILAW_KIT_CHECK(
+      (Law::card.inputs & ~inputs) == 0,
+      ".inputs of the card are reads_gap, reads_v_previous, reads_v_smooth and reads_area, joined by |")
   ILAW_KIT_CHECK(Law::card.dimensions != 0 && Law::card.delassus_forms != 0,
                  "the card of a law serves at least one dimension and one form of H")
   ILAW_KIT_CHECK(

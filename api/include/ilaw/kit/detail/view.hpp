@@ -62,7 +62,7 @@ struct view : view_options {
   template <class T, int Count>
   using array_of = typename arrays::template array_type<T, Count>;
 
-  array_of<const value, 3> v_free, v_previous, normal, tangent, spin_free, spin_previous;
+  array_of<const value, 3> v_free, v_smooth, v_previous, normal, tangent, spin_free, spin_previous;
   array_of<const value, 6> delassus;
   const value *gap, *gap_offset, *area;
   const value* parameters[most_parameters];  // by the law's parameters; null: the same at all nodes
@@ -99,6 +99,7 @@ class pack_copy {
     pack.count = b.count - i < width ? b.count - i : width;
     pack.is_scalar = false;
     take(b.v_free, pack.v_free, v_free_);
+    take(b.v_smooth, pack.v_smooth, v_smooth_);
     take(b.v_previous, pack.v_previous, v_previous_);
     take(b.normal, pack.normal, normal_);
     take(b.tangent, pack.tangent, tangent_);
@@ -185,7 +186,8 @@ class pack_copy {
   const std::int64_t first_;
   const int width_;
   using column = double[copy_lanes];
-  alignas(64) column v_free_[3], v_previous_[3], normal_[3], tangent_[3], delassus_[6], gap_, area_;
+  alignas(64) column v_free_[3], v_smooth_[3],
+      v_previous_[3], normal_[3], tangent_[3], delassus_[6], gap_, area_;
   alignas(64) column spin_free_[3], spin_previous_[3], moment_[3], spin_[3];
   alignas(64) column parameters_[most_parameters], earlier_[4], given_[5], state_in_[most_states];
   alignas(64) column state_out_[most_states], frame_in_[6], frame_out_[6];
@@ -201,6 +203,7 @@ enum reason : int {
   reason_normal,
   reason_tangent,
   reason_v_free,
+  reason_v_smooth,
   reason_delassus,
   reason_gap,
   reason_v_previous,

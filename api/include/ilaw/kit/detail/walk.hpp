@@ -47,6 +47,8 @@ class batch_walk {
   bool stays_or_absent(const Array& a, int components) const {
     return !numbers_in<Host>(a) || stays(a, components);
   }
+  bool reads_smooth() const { return (made_.inputs & ILAW_INPUT_V_SMOOTH) != 0; }
+  bool smooth_stays() const { return !reads_smooth() || stays_or_absent(b_.v_smooth, d_); }
   bool delassus_stays() const {
     if (!made_.is_transverse() && d_ < 3) return false;
     return stays(b_.delassus, made_.delassus_numbers());
@@ -62,7 +64,7 @@ class batch_walk {
   }
   bool all_stay() const {
     bool stay = !converts && !b_.index && !b_.index64 && (!b_.status || b_.status_stride == 1) &&
-                stays_or_absent(b_.v_free, d_) && stays_or_absent(b_.v_previous, d_) &&
+                stays_or_absent(b_.v_free, d_) && smooth_stays() && stays_or_absent(b_.v_previous, d_) &&
                 stays_or_absent(b_.normal, d_) && stays_or_absent(b_.tangent, d_) && delassus_stays() &&
                 stays_or_absent(b_.gap, 1) && stays_or_absent(b_.gap_offset, 1) &&
                 stays_or_absent(b_.area, 1) && stays_or_absent(b_.impulse, d_) &&
@@ -254,6 +256,7 @@ class batch_walk {
 
   void open_inputs(view<Number>& v, const node_range& n) {
     v.v_free = gather(b_.v_free, d_, n, s_.v_free);
+    if (reads_smooth()) v.v_smooth = gather(b_.v_smooth, d_, n, s_.v_smooth);
     const bool has_balance = wants_balance(made_, b_);
     const std::uint32_t read = made_.inputs | (has_balance ? made_.balance_inputs : 0U);
     if (v.reads_previous || has_balance) v.v_previous = gather(b_.v_previous, d_, n, s_.v_previous);
@@ -332,8 +335,9 @@ class batch_walk {
   }
 
   struct alignas(64) scratch {
-    Number v_free[3 * block_nodes], v_previous[3 * block_nodes], normal[3 * block_nodes],
-        tangent[3 * block_nodes], spin_free[3 * block_nodes], spin_previous[3 * block_nodes];
+    Number v_free[3 * block_nodes], v_smooth[3 * block_nodes], v_previous[3 * block_nodes];
+    Number normal[3 * block_nodes], tangent[3 * block_nodes];
+    Number spin_free[3 * block_nodes], spin_previous[3 * block_nodes];
     Number delassus[6 * block_nodes], gap[block_nodes], gap_offset[block_nodes], area[block_nodes];
     Number parameters[most_parameters][block_nodes];
     Number impulse[3 * block_nodes], velocity[3 * block_nodes], energy[ILAW_ENERGY_COUNT * block_nodes];

@@ -141,6 +141,7 @@ class device_writer {
     const std::uint32_t read = made_.inputs | (has_balance ? made_.balance_inputs : 0U);
     to_.v_free = numbers(b_.v_free);
     to_.delassus = numbers(b_.delassus);
+    if (made_.inputs & ILAW_INPUT_V_SMOOTH) to_.v_smooth = numbers(b_.v_smooth);
     if (to_.reads_previous || has_balance) to_.v_previous = numbers(b_.v_previous);
     if (made_.frame == ILAW_FRAME_GLOBAL) to_.normal = numbers(b_.normal);
     if (made_.inputs & ILAW_INPUT_TANGENT) to_.tangent = numbers(b_.tangent);

@@ -100,6 +100,7 @@ ILAW_KIT_INLINE view<at_node<Law, Number>> view_of(const device_arguments<Law>& 
   static_cast<view_options&>(v) = a;
   v.count = 1;
   v.v_free = array_at<const Number>(a.v_free, node, a.dimension);
+  v.v_smooth = array_at<const Number>(a.v_smooth, node, a.dimension);
   v.v_previous = array_at<const Number>(a.v_previous, node, a.dimension);
   v.normal = array_at<const Number>(a.normal, node, a.dimension);
   v.tangent = array_at<const Number>(a.tangent, node, a.dimension);
