@@ -4,26 +4,9 @@
 #include <ilaw/arrays.hpp>
 
 #include <algorithm>
-#include <cstdlib>
-#include <limits>
 
 namespace ilaw::lammps {
 namespace {
-
-const ilaw_parameter* find(const ilaw_law& law, const std::string& name) {
-  for (std::uint32_t i = 0; i < law.parameter_count; ++i)
-    if (name == law.parameters[i]->name) return law.parameters[i];
-  return nullptr;
-}
-
-double number(const std::string& name, const std::string& text) {
-  if (text == "inf") return std::numeric_limits<double>::infinity();
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0')
-    throw error(ILAW_INVALID_PARAMETER, name + ": expected a number or inf, found " + text);
-  return value;
-}
 
 // Spheres have arms along the normal. A law that serves spins may give moments; a law that knows neither form
 // is given the matrix.
@@ -40,13 +23,7 @@ ContactSet::ContactSet(const std::string& law, const std::vector<std::array<std:
   if (opened.plugin().law_count != 1) throw error(ILAW_NOT_FOUND, law + ": not a library of one law");
   const ilaw_law& description = *opened.plugin().laws[0];
   ilaw::parameters given;
-  for (const auto& [name, text] : parameters) {
-    const ilaw_parameter* known = find(description, name);
-    if (known && known->kind == ILAW_KIND_CHOICE)
-      given.text(name, text);
-    else
-      given.number(name, known ? number(name, text) : 0.0);  // create refuses an unknown name
-  }
+  for (const auto& [name, text] : parameters) given.set(description, name, text);
   ilaw_setup setup{};
   setup.struct_size = sizeof setup;
   setup.dimension = 3;

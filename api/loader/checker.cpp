@@ -10,6 +10,7 @@ void checker::check_text(const char* t, const char* what, bool lines_allowed) co
   if (!readable_text(t)) refuse(std::string(what) + " is no readable text of at most 64 KiB");
   if (!clean_text(t, lines_allowed))
     refuse(std::string(what) + " has bytes that are no UTF-8 or control characters");
+  kept_.remember(t);
 }
 
 void checker::name(const char* n, const char* what) const {

@@ -21,7 +21,7 @@
 
 namespace ilaw::loading {
 
-// Memory of copies that live as long as a library or an instance.
+// Memory of copies of a description, and what was read to make them.
 class storage {
  public:
   void* room(std::size_t bytes) {
@@ -29,8 +29,27 @@ class storage {
     return rooms_.back().get();
   }
 
+  void remember(const void* at, std::size_t bytes) {
+    read_.push_back({static_cast<const char*>(at), std::string(static_cast<const char*>(at), bytes), false});
+  }
+  void remember(const char* text) { read_.push_back({text, text, true}); }
+  // Whether all that was read is still there. Each address stands in what was read before it, so that a
+  // library that frees and reuses its memory is followed, too.
+  bool is_unchanged() const {
+    return std::all_of(read_.begin(), read_.end(), [](const part& one) {
+      return one.is_text ? one.bytes == one.at : std::memcmp(one.at, one.bytes.data(), one.bytes.size()) == 0;
+    });
+  }
+
  private:
+  struct part {
+    const char* at;
+    std::string bytes;
+    bool is_text;
+  };
+
   std::vector<std::unique_ptr<std::max_align_t[]>> rooms_;
+  std::vector<part> read_;
 };
 
 class checker {
@@ -56,6 +75,8 @@ class checker {
       refuse(std::string(what) + " has struct_size " + std::to_string(size) + ", expected at least " +
              std::to_string(sized::least<Struct>) + " and at most " + std::to_string(sized::most));
     if (!readable(given, size)) refuse_unreadable(what);
+    kept_.remember(given, sizeof size);
+    kept_.remember(given, size);
     const std::size_t room = std::max<std::size_t>(size, sizeof(Struct));
     auto* made = static_cast<Struct*>(kept_.room(room));
     sized::copy(made, room, given, size);
@@ -75,6 +96,7 @@ class checker {
     if (count == 0) return made;
     if (!given) refuse(std::string(what) + " is null, expected " + std::to_string(count) + " entries");
     if (!readable(given, bytes)) refuse_unreadable(what);
+    kept_.remember(given, bytes);
     std::memcpy(made, given, bytes);
     return made;
   }

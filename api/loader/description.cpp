@@ -191,10 +191,9 @@ std::set<std::string> given_per_node(const ilaw_setup& setup) {
 
 // The batch carries one array for each parameter that the host gave per node, no more: a name too many would
 // read beyond the host's list.
-void check_per_node(const checker& check, const ilaw_setup& setup, ilaw_instance_info& info) {
+void check_per_node(const checker& check, const std::set<std::string>& given, ilaw_instance_info& info) {
   info.per_node_parameters =
       check.array(info.per_node_parameters, info.per_node_parameter_count, "per_node_parameters");
-  const std::set<std::string> given = given_per_node(setup);
   std::set<std::string> seen;
   for (std::uint32_t i = 0; i < info.per_node_parameter_count; ++i) {
     const char* name = info.per_node_parameters[i];
@@ -222,6 +221,27 @@ void check_permissions(const checker& check, const ilaw_law& law, const ilaw_ins
   if (law.permissions & known_permissions & ~info.permissions)
     check.refuse("permissions is " + std::to_string(info.permissions) + ", expected at least the law's, " +
                  std::to_string(law.permissions));
+}
+
+// Replaces arrays in the info by checked copies.
+void check_instance(const instance_origin& origin, instance_description& made) {
+  ilaw_instance_info& info = made.info;
+  const checker check = checker(origin.file, origin.minor > ILAW_ABI_MINOR, made.kept)
+                            .inside(quoted("law", origin.law.id) + ": instance");
+  // These ask for arrays: what the loader does not know, no host can give.
+  if (const std::uint32_t asked = info.inputs | info.balance_inputs; (asked & ~known_inputs) != 0)
+    throw refusal(ILAW_UNSUPPORTED, origin.file + ": law '" + origin.law.id + "': reads inputs " +
+                                        std::to_string(asked) + ", expected only the bits of " +
+                                        std::to_string(known_inputs));
+  check.mask(info.capabilities, known_capabilities, "capabilities");
+  check_permissions(check, origin.law, info);
+  check.zero(info.reserved, "reserved");
+  info.state_variables = checked_elements(check, info.state_variables, info.state_variable_count,
+                                          "state_variables", "state variable", check_state_variable);
+  check_state(check, info, made.dimension);
+  check_per_node(check, made.per_node, info);
+  info.amounts = checked_elements(check, info.amounts, info.amount_count, "amounts", "amount", check_amount);
+  check_amounts(check, origin.law, info);
 }
 
 }  // namespace
@@ -253,24 +273,22 @@ const ilaw_plugin* checked_plugin(const std::string& file, const ilaw_plugin* gi
   return &plugin;
 }
 
-void check_instance_info(const instance_origin& origin, const ilaw_setup& setup, ilaw_instance_info& info,
-                         storage& kept) {
-  const checker check = checker(origin.file, origin.minor > ILAW_ABI_MINOR, kept)
-                            .inside(quoted("law", origin.law.id) + ": instance");
-  // These ask for arrays: what the loader does not know, no host can give.
-  if (const std::uint32_t asked = info.inputs | info.balance_inputs; (asked & ~known_inputs) != 0)
-    throw refusal(ILAW_UNSUPPORTED, origin.file + ": law '" + origin.law.id + "': reads inputs " +
-                                        std::to_string(asked) + ", expected only the bits of " +
-                                        std::to_string(known_inputs));
-  check.mask(info.capabilities, known_capabilities, "capabilities");
-  check_permissions(check, origin.law, info);
-  check.zero(info.reserved, "reserved");
-  info.state_variables = checked_elements(check, info.state_variables, info.state_variable_count,
-                                          "state_variables", "state variable", check_state_variable);
-  check_state(check, info, setup.dimension);
-  check_per_node(check, setup, info);
-  info.amounts = checked_elements(check, info.amounts, info.amount_count, "amounts", "amount", check_amount);
-  check_amounts(check, origin.law, info);
+std::shared_ptr<const instance_description> instance_descriptions::checked(const instance_origin& origin,
+                                                                           const ilaw_setup& setup,
+                                                                           const ilaw_instance_info& given) {
+  constexpr std::size_t most = 8;  // a library whose instances all differ must not fill the memory
+  const std::set<std::string> per_node = given_per_node(setup);
+  const std::scoped_lock lock(guard_);
+  for (const auto& one : known_)
+    if (one->law == &origin.law && one->dimension == setup.dimension && one->per_node == per_node &&
+        std::memcmp(&one->given, &given, sizeof given) == 0 && one->kept.is_unchanged())
+      return one;
+  const auto made = std::make_shared<instance_description>(
+      instance_description{&origin.law, setup.dimension, per_node, given, given, {}});
+  check_instance(origin, *made);
+  if (known_.size() == most) known_.erase(known_.begin());
+  known_.push_back(made);
+  return made;
 }
 
 }  // namespace ilaw::loading

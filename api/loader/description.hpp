@@ -8,7 +8,12 @@
 
 #include <ilaw/ilaw.h>
 
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <set>
 #include <string>
+#include <vector>
 
 namespace ilaw::loading {
 
@@ -22,8 +27,25 @@ struct instance_origin {
   std::uint16_t minor;
 };
 
-// Replaces arrays in the info by checked copies.
-void check_instance_info(const instance_origin& origin, const ilaw_setup& setup, ilaw_instance_info& info,
-                         storage& kept);
+// What an instance says of itself, with copies of its arrays; given is the info as the library wrote it.
+struct instance_description {
+  const ilaw_law* law;
+  std::uint32_t dimension;
+  std::set<std::string> per_node;  // parameters that the host gave so
+  ilaw_instance_info given, info;
+  storage kept;
+};
+
+// Those of a library that are known. Instances that say the same are checked once: a host may make one for
+// each node.
+class instance_descriptions {
+ public:
+  std::shared_ptr<const instance_description> checked(const instance_origin& origin, const ilaw_setup& setup,
+                                                      const ilaw_instance_info& given);
+
+ private:
+  std::mutex guard_;
+  std::vector<std::shared_ptr<const instance_description>> known_;
+};
 
 }  // namespace ilaw::loading

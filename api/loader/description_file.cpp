@@ -26,11 +26,12 @@ constexpr std::size_t max_depth = 16;
   throw refusal(ILAW_BAD_LIBRARY, file + ": " + found_and_expected);
 }
 
-std::string content_of(const std::string& file, const file_status& status) {
+std::string content_of(const std::string& file) {
+  const open_file opened(file);
+  const file_status status = opened.status();
   if (!status.regular) refuse(file, "not a regular file, expected a description of a library");
   if (status.size > max_bytes) refuse(file, "larger than 1 MiB, expected a description of a library");
   std::string text(status.size, '\0');
-  const open_file opened(file);
   if (!opened.is_open() || !opened.copy(0, text.data(), text.size())) refuse(file, "the file cannot be read");
   return text;
 }
@@ -234,9 +235,8 @@ std::optional<description> parse_description(const std::string& file, const std:
 
 std::optional<description> read_description(const std::string& library) {
   const std::string file = description_path(library);
-  const file_status status = status_of(file);
-  if (file.empty() || !status.exists) return {};
-  return parse_description(file, content_of(file, status));
+  if (file.empty() || !status_of(file).exists) return {};
+  return parse_description(file, content_of(file));
 }
 
 void check_members(const json_value& found, const std::string& file) {

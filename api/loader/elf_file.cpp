@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "elf_file.hpp"
 
-#include "file.hpp"
 #include "refusal.hpp"
 
 #include <elf.h>
@@ -59,14 +58,16 @@ void check_elf(const std::string& path, std::uint64_t size, const byte_source& b
   }
 }
 
-void check_shared_object(const std::string& path) {
+void check_shared_object(const std::string& path, const open_file& file) {
   constexpr std::uint64_t max_bytes = std::uint64_t{1} << 30;
-  const file_status status = status_of(path);
+  const file_status status = file.status();
   if (status.folder) refuse(path, "a folder");
   if (!status.regular) refuse(path, "not a regular file");
   if (status.size > max_bytes) refuse(path, "larger than 1 GiB");
-  const open_file file(path);
   if (!file.is_open()) refuse(path, "the file cannot be read");
+  if (status.anyone_writes)
+    throw refusal(ILAW_BAD_LIBRARY,
+                  path + ": every user may write to the file, expected no such permission (chmod o-w)");
   check_elf(path, status.size, [&file](std::uint64_t offset, void* to, std::size_t count) {
     return file.copy(offset, to, count);
   });

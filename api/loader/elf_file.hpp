@@ -3,6 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "file.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -13,9 +15,9 @@ namespace ilaw::loading {
 // Copies bytes of a file from an offset; false where it cannot.
 using byte_source = std::function<bool(std::uint64_t offset, void* to, std::size_t size)>;
 
-// Both throw refusal, naming what is wrong with the file. check_elf reads headers from a source of `size`
-// bytes.
-void check_shared_object(const std::string& path);
+// Both throw refusal, naming what is wrong with the file, which path names. check_elf reads headers from a
+// source of `size` bytes.
+void check_shared_object(const std::string& path, const open_file& file);
 void check_elf(const std::string& path, std::uint64_t size, const byte_source& bytes);
 
 }  // namespace ilaw::loading

@@ -7,27 +7,62 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cinttypes>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 
 namespace ilaw::loading {
-file_status status_of(const std::string& path) {
+namespace {
+
+std::int64_t nanoseconds(const struct statx_timestamp& time) {
+  return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec;
+}
+
+file_status status_at(int folder, const char* path, int flags) {
   struct statx found {};
   file_status status;
-  if (statx(AT_FDCWD, path.c_str(), 0, STATX_BASIC_STATS, &found) != 0) return status;
+  if (statx(folder, path, flags, STATX_BASIC_STATS, &found) != 0) return status;
   status.exists = true;
   status.folder = S_ISDIR(found.stx_mode);
   status.regular = S_ISREG(found.stx_mode);
   status.anyone_writes = (found.stx_mode & S_IWOTH) != 0;
+  status.sticky = (found.stx_mode & S_ISVTX) != 0;
   status.device = std::uint64_t{found.stx_dev_major} << 32 | found.stx_dev_minor;
   status.inode = found.stx_ino;
+  status.links = found.stx_nlink;
   status.size = found.stx_size;
+  status.written = nanoseconds(found.stx_mtime);
+  status.changed = nanoseconds(found.stx_ctime);
   return status;
 }
+
+}  // namespace
+
+file_status status_of(const std::string& path) { return status_at(AT_FDCWD, path.c_str(), 0); }
 
 std::string canonical(const std::string& path) {
   const std::unique_ptr<char, decltype(&std::free)> real(realpath(path.c_str(), nullptr), &std::free);
   return real ? real.get() : "";
+}
+
+// Source of the format: proc_pid_maps(5).
+std::string mapped_file(const void* address) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> maps(std::fopen("/proc/self/maps", "re"),
+                                                             &std::fclose);
+  const auto wanted = reinterpret_cast<std::uintptr_t>(address);
+  char* line = nullptr;
+  std::size_t room = 0;
+  const char* found = nullptr;
+  while (maps && !found && getline(&line, &room, maps.get()) > 0) {
+    std::uintptr_t first = 0, end = 0;
+    const char* path = std::strchr(line, '/');
+    if (std::sscanf(line, "%" SCNxPTR "-%" SCNxPTR, &first, &end) == 2 && wanted >= first && wanted < end)
+      found = path ? path : "";
+  }
+  const std::unique_ptr<char, decltype(&std::free)> owner(line, &std::free);
+  return found ? std::string(found, std::strcspn(found, "\n")) : "";
 }
 
 std::vector<std::string> names_in(const std::string& folder) {
@@ -40,10 +75,15 @@ std::vector<std::string> names_in(const std::string& folder) {
 }
 
 open_file::open_file(const std::string& path)
-    : number_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
+    : path_(path),
+      number_(status_of(path).regular ? open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK) : -1) {}
 
 open_file::~open_file() {
   if (number_ >= 0) close(number_);
+}
+
+file_status open_file::status() const {
+  return is_open() ? status_at(number_, "", AT_EMPTY_PATH) : status_of(path_);
 }
 
 bool open_file::copy(std::uint64_t offset, void* to, std::size_t size) const {

@@ -1,58 +1,32 @@
 // The C interface of ilaw/loader.h.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ilaw/loader.h>
-#include <ilaw/floating_control.hpp>
 
-#include "description.hpp"
+#include "control_guard.hpp"
 #include "description_file.hpp"
 #include "description_text.hpp"
-#include "dynamic.hpp"
 #include "elf_file.hpp"
-#include "file.hpp"
-#include "refusal.hpp"
+#include "registry.hpp"
 #include "search.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <cstring>
-#include <list>
 #include <memory>
-#include <mutex>
 #include <new>
 #include <string>
-
-struct ilaw_library {
-  std::string path;
-  std::uint64_t device, inode;
-  void* handle;
-  ilaw::loading::storage kept = {};
-  const ilaw_plugin* plugin = nullptr;
-  long users = 0;  // openings and interfaces
-};
 
 struct ilaw_interface {
   ilaw_library* library;
   const ilaw_law* law;
   ilaw_instance* instance = nullptr;
-  ilaw::loading::storage kept = {};
-  ilaw_instance_info info = {};
+  std::shared_ptr<const ilaw::loading::instance_description> description = nullptr;
 };
 
 namespace {
 
 using ilaw::loading::refusal;
-
-// All libraries that are open; std::list keeps their addresses. Never destroyed: interfaces that a host keeps
-// at namespace scope end after whatever this file would.
-struct registry {
-  std::mutex guard;
-  std::list<ilaw_library> open;
-};
-registry& libraries() {
-  static registry& all = *new registry;
-  return all;
-}
 
 void say(char* message, std::size_t size, const char* text) {
   if (message && size > 0) std::snprintf(message, size, "%s", text);
@@ -77,94 +51,6 @@ std::int32_t guarded(char* message, std::size_t size, Work work) {
     say(message, size, "an exception of a library");
     return ILAW_BAD_LIBRARY;
   }
-}
-
-// "ilaw_plugin_v2" tells a library of another major version from a file that is no law library at all.
-std::string other_version(void* handle) {
-  for (int major = 0; major < 10; ++major) {
-    const std::string name = "ilaw_plugin_v" + std::to_string(major);
-    if (major != ILAW_ABI_MAJOR && dlsym(handle, name.c_str()))
-      return "a library for ABI major version " + std::to_string(major) + ", expected major version " +
-             std::to_string(ILAW_ABI_MAJOR);
-  }
-  return std::string("not a law library: the symbol ") + ILAW_ENTRY_NAME + " is missing";
-}
-
-// Restores the floating-point control that code of a library changed, and refuses that library.
-class control_guard {
- public:
-  void check(const std::string& path, const char* when) const {
-    if (ilaw::floating_control::now() == before_) return;
-    before_.restore();
-    throw refusal(ILAW_BAD_LIBRARY,
-                  path + ": " + when +
-                      " changed how the processor rounds, traps or flushes to zero; expected no change "
-                      "(linking with -ffast-math makes one)");
-  }
-  ~control_guard() {
-    if (ilaw::floating_control::now() != before_) before_.restore();
-  }
-  control_guard() = default;
-  control_guard(const control_guard&) = delete;
-  control_guard& operator=(const control_guard&) = delete;
-
- private:
-  const ilaw::floating_control before_ = ilaw::floating_control::now();
-};
-
-const ilaw_plugin* described(const std::string& path, void* handle, ilaw::loading::storage& kept) {
-  void* symbol = dlsym(handle, ILAW_ENTRY_NAME);
-  if (!symbol) throw refusal(ILAW_BAD_LIBRARY, path + ": " + other_version(handle));
-  ilaw_entry_function entry = nullptr;
-  std::memcpy(&entry, &symbol, sizeof entry);  // ISO C++ has no cast from object to function pointer
-  return ilaw::loading::checked_plugin(path, entry(), kept);
-}
-
-struct closer {
-  void operator()(void* handle) const { dlclose(handle); }
-};
-
-ilaw_library* open_checked(std::list<ilaw_library>& open, const std::string& path,
-                           const ilaw::loading::file_status& status) {
-  ilaw::loading::check_shared_object(path);
-  const auto written = ilaw::loading::read_description(path);  // refused before any code of the library runs
-  const control_guard control;
-  std::unique_ptr<void, closer> handle(dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL));
-  if (!handle) throw refusal(ILAW_BAD_LIBRARY, path + ": cannot be loaded: " + dlerror());
-  std::list<ilaw_library> made;
-  made.push_back(ilaw_library{path, status.device, status.inode, handle.get()});
-  made.back().plugin = described(path, handle.get(), made.back().kept);
-  control.check(path, "loading it");
-  if (written) ilaw::loading::check_same(written->parsed, *made.back().plugin, path);
-  open.splice(open.end(), made);
-  static_cast<void>(handle.release());  // the list closes it from here on
-  return &open.back();
-}
-
-ilaw_library* open_or_share(const std::string& path) {
-  const ilaw::loading::file_status status = ilaw::loading::status_of(path);
-  if (!status.exists) throw refusal(ILAW_NOT_FOUND, path + ": no such file");
-  registry& all = libraries();
-  const std::scoped_lock lock(all.guard);
-  ilaw_library* found = nullptr;
-  for (ilaw_library& library : all.open)
-    if (library.device == status.device && library.inode == status.inode) found = &library;
-  if (!found) found = open_checked(all.open, path, status);
-  ++found->users;
-  return found;
-}
-
-void use(ilaw_library& library) {
-  const std::scoped_lock lock(libraries().guard);
-  ++library.users;
-}
-
-void release(ilaw_library* library) {
-  registry& all = libraries();
-  const std::scoped_lock lock(all.guard);
-  if (--library->users > 0) return;
-  dlclose(library->handle);
-  all.open.remove_if([library](const ilaw_library& open) { return &open == library; });
 }
 
 const ilaw_law& chosen_law(const ilaw_library& library, const char* id) {
@@ -213,16 +99,16 @@ std::unique_ptr<ilaw_interface> create_interface(ilaw_library& library, const il
     }
   };
   std::unique_ptr<ilaw_interface, unmade> made(new ilaw_interface{&library, &law});
-  const control_guard control;
+  const ilaw::loading::control_guard control;
   made->instance = created(library, law, setup);
   control.check(library.path, "create");
-  made->info.struct_size = sizeof made->info;
-  if (law.info(made->instance, &made->info) != ILAW_OK)
+  ilaw_instance_info info{};
+  info.struct_size = sizeof info;
+  if (law.info(made->instance, &info) != ILAW_OK)
     throw refusal(ILAW_BAD_LIBRARY, library.path + ": law '" + law.id + "': info refuses its own instance");
   control.check(library.path, "info");
-  made->info.struct_size = sizeof made->info;
-  ilaw::loading::check_instance_info({library.path, law, library.plugin->abi_minor}, setup, made->info,
-                                     made->kept);
+  info.struct_size = sizeof info;
+  made->description = library.instances.checked({library.path, law, library.plugin->abi_minor}, setup, info);
   return std::unique_ptr<ilaw_interface>(made.release());
 }
 
@@ -252,7 +138,7 @@ std::int32_t open_with(std::string (*find)(const std::string&), const char* text
     if (library) *library = nullptr;
     if (!text || !library || !*text)
       throw refusal(ILAW_INVALID_ARGUMENT, "the name of the library, or where to put it, is null or empty");
-    *library = open_or_share(find(text));
+    *library = ilaw::loading::open_library(find(text));
     return ILAW_OK;
   });
 }
@@ -278,7 +164,7 @@ ilaw_result ILAW_CALL ilaw_library_read_description(const char* name_or_path, ch
       throw refusal(ILAW_INVALID_ARGUMENT,
                     "the name of the library, or where to put the length, is null or empty");
     const std::string path = ilaw::loading::find_library(name_or_path);
-    ilaw::loading::check_shared_object(path);
+    ilaw::loading::check_shared_object(path, ilaw::loading::open_file(path));
     const auto found = ilaw::loading::read_description(path);
     if (!found) return ILAW_OK;
     ilaw::loading::check_members(found->parsed, ilaw::loading::description_path(path));
@@ -288,7 +174,7 @@ ilaw_result ILAW_CALL ilaw_library_read_description(const char* name_or_path, ch
 }
 
 void ILAW_CALL ilaw_library_close(ilaw_library* library) {
-  if (library) release(library);
+  if (library) ilaw::loading::release(*library);
 }
 
 const ilaw_plugin* ILAW_CALL ilaw_library_plugin(const ilaw_library* library) {
@@ -329,7 +215,7 @@ ilaw_result ILAW_CALL ilaw_interface_create(ilaw_library* library, const char* i
                                                ", expected at least " +
                                                std::to_string(ilaw::sized::least<ilaw_setup>));
     auto made = create_interface(*library, chosen_law(*library, id), *setup);
-    use(*library);
+    ilaw::loading::use(*library);
     *interface = made.release();
     return ILAW_OK;
   });
@@ -340,7 +226,7 @@ void ILAW_CALL ilaw_interface_destroy(ilaw_interface* interface) {
   ilaw_library* library = interface->library;
   interface->law->destroy(interface->instance);
   delete interface;
-  release(library);
+  ilaw::loading::release(*library);
 }
 
 const ilaw_law* ILAW_CALL ilaw_interface_law(const ilaw_interface* interface) {
@@ -358,7 +244,7 @@ ilaw_result ILAW_CALL ilaw_interface_info(const ilaw_interface* interface, ilaw_
   if (room > sizeof *info)
     if (const std::int32_t code = interface->law->info(interface->instance, info); code != ILAW_OK)
       return code;
-  std::memcpy(info, &interface->info, std::min<std::size_t>(room, sizeof *info));
+  std::memcpy(info, &interface->description->info, std::min<std::size_t>(room, sizeof *info));
   info->struct_size = room;
   return ILAW_OK;
 }

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search.hpp"
 
-#include "dynamic.hpp"
 #include "file.hpp"
 #include "refusal.hpp"
 
 #include <sys/auxv.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -31,10 +29,23 @@ std::string normal(const std::string& path) {
   return text.empty() ? "/" : text;
 }
 
+// The folder by which every user may put a library of his own into this one: itself, or one above it in which
+// he may rename the next. The sticky bit forbids that, as in /tmp.
+std::string writable_by_all(const std::string& folder) {
+  for (std::size_t end = folder.find('/', 1); end != std::string::npos; end = folder.find('/', end + 1)) {
+    const std::string above = folder.substr(0, end);
+    if (const file_status status = status_of(above); status.anyone_writes && !status.sticky) return above;
+  }
+  return status_of(folder).anyone_writes ? folder : "";
+}
+
 void add_once(search_path& path, const std::string& folder) {
-  const std::string text = normal(folder);
-  std::vector<std::string>& list = status_of(text).anyone_writes ? path.left_out : path.folders;
-  if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
+  const std::string text = normal(folder), real = canonical(text);
+  std::string weak = writable_by_all(text);
+  if (weak.empty() && real != text) weak = writable_by_all(real);
+  std::vector<std::string>& list = weak.empty() ? path.folders : path.left_out;
+  const std::string entry = weak.empty() || weak == text ? text : text + " (by " + weak + ")";
+  if (std::find(list.begin(), list.end(), entry) == list.end()) list.push_back(entry);
 }
 
 void add_environment(search_path& path) {
@@ -52,21 +63,16 @@ void add_environment(search_path& path) {
   }
 }
 
-// Not for a set-uid program: whoever links to it from elsewhere chooses what lies beside it.
-void add_beside_program(search_path& path) {
-  char program[4096];
+// Beside the program, and beside the shared object that the loader is or is part of: a plug-in of a foreign
+// program, as Python's. Not if set-uid: whoever links to the program from elsewhere chooses what lies there.
+void add_beside_files(search_path& path) {
   if (getauxval(AT_SECURE) != 0) return;
-  const ssize_t length = readlink("/proc/self/exe", program, sizeof program);
-  if (length <= 0 || length == static_cast<ssize_t>(sizeof program)) return;
-  add_once(path, std::string(program, static_cast<std::size_t>(length)) + "/../../lib/ilaw");
-}
-
-// The library that the loader is, or is part of: whoever calls it may lie elsewhere, as Python does.
-void add_beside_library(search_path& path) {
-  Dl_info where;
-  if (getauxval(AT_SECURE) != 0 || dladdr(ILAW_INSTALLED_FOLDER, &where) == 0 || where.dli_fname[0] != '/')
-    return;
-  add_once(path, std::string(where.dli_fname) + "/../../lib/ilaw");
+  static const std::string &program = *new std::string(
+                               mapped_file(reinterpret_cast<const void*>(getauxval(AT_PHDR)))),
+                           &own = *new std::string(mapped_file(ILAW_INSTALLED_FOLDER));
+  if (!program.empty()) add_once(path, program + "/../../lib/ilaw");
+  if (own.empty() || own == program) return;
+  for (const char* place : {"/../ilaw", "/../../lib/ilaw"}) add_once(path, own + place);
 }
 
 bool ends_in_so(std::string_view name) { return name.size() > 3 && name.substr(name.size() - 3) == ".so"; }
@@ -112,8 +118,7 @@ std::string joined(const std::vector<std::string>& texts) {
 search_path folders_searched() {
   search_path path;
   add_environment(path);
-  add_beside_program(path);
-  add_beside_library(path);
+  add_beside_files(path);
   // The last two serve a host that links the loader of one installation and runs beside laws of a package.
   for (const char* folder : {ILAW_INSTALLED_FOLDER, "/usr/local/lib/ilaw", "/usr/lib/ilaw"})
     add_once(path, folder);

@@ -4,6 +4,7 @@
 
 #include <ilaw/ext/draft/profile.h>
 
+#include <cstdlib>
 #include <set>
 
 namespace ilaw::testing {
@@ -52,6 +53,16 @@ TEST(Create, RefusesSetupsThatTheLawDoesNotServe) {
   setup.setup.delassus_form = ILAW_DELASSUS_SCALAR;
   setup.setup.flags = std::uint64_t{1} << 40;
   EXPECT_EQ(refusal(), "law 'contact': flags 0x10000000000 are not known: expected 0");
+}
+
+TEST(Create, RefusesUnknownInstructionSets) {
+  const SetupBuilder setup({});
+  for (const char* level : {"", "V3", "avx2", "v5", "v3 "}) {
+    setenv("ILAW_ISA", level, 1);
+    EXPECT_EQ(refusal_of("contact", setup, ILAW_UNSUPPORTED),
+              std::string("law 'contact': ILAW_ISA is '") + level + "', expected baseline, v3 or v4");
+  }
+  unsetenv("ILAW_ISA");
 }
 
 // A law whose named parameters are tables: time, value, time, value ...

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace {
 
@@ -56,6 +58,93 @@ TEST(Parameters, StayValidWhenCopiedAndGivenAnew) {
   ilaw::parameters none;
   none.give(setup);
   EXPECT_EQ(setup.argument_count, 0U);
+}
+
+// Short texts stand in the objects themselves.
+TEST(Parameters, StayValidWhenMoved) {
+  ilaw_setup setup{};
+  ilaw::parameters first;
+  first.number("mu", 0.3).text("finish", "rough").table("s", {{"time", {0.0}}}, {7.0});
+  first.give(setup);
+  std::vector<ilaw::parameters> kept;
+  for (int k = 0; k < 5; ++k) kept.emplace_back();  // grows, and moves those that it has
+  kept.front() = std::move(first);
+  first = ilaw::parameters();
+  kept.resize(100);
+  EXPECT_STREQ(setup.arguments[0]->name, "mu");
+  EXPECT_STREQ(setup.arguments[1]->text, "rough");
+  EXPECT_STREQ(setup.arguments[2]->axes[0]->name, "time");
+  EXPECT_EQ(setup.arguments[2]->values[0], 7.0);
+}
+
+struct DescribedLaw {
+  static constexpr const char* choices[] = {"smooth", "rough"};
+  ilaw_parameter friction{}, count{}, finish{}, newer{};
+  const ilaw_parameter* parameters[4] = {&friction, &count, &finish, &newer};
+  ilaw_law law{};
+
+  DescribedLaw() {
+    friction.name = "friction";
+    friction.flags = ILAW_FLAG_ALLOWS_INFINITY;
+    count.name = "count";
+    count.kind = ILAW_KIND_INTEGER;
+    finish.name = "finish";
+    finish.kind = ILAW_KIND_CHOICE;
+    finish.choices = choices;
+    finish.choice_count = 2;
+    newer.name = "newer";
+    newer.kind = ILAW_KIND_CHOICE + 1;
+    law.id = "slide";
+    law.parameters = parameters;
+    law.parameter_count = 4;
+  }
+  DescribedLaw(const DescribedLaw&) = delete;
+  DescribedLaw& operator=(const DescribedLaw&) = delete;
+
+  std::string refusal_of(const std::string& name, const std::string& text) const {
+    try {
+      ilaw::parameters().set(law, name, text);
+      return "";
+    } catch (const ilaw::error& error) {
+      EXPECT_EQ(error.code(), ILAW_INVALID_PARAMETER);
+      return error.what();
+    }
+  }
+};
+
+// As an input file has them.
+TEST(Parameters, SetTextsByTheLawsDescription) {
+  const DescribedLaw known;
+  ilaw::parameters given;
+  given.set(known.law, "friction", "3e-1")
+      .set(known.law, "friction", "inf")
+      .set(known.law, "count", "-4")
+      .set(known.law, "finish", "rough")
+      .set(known.law, "newer", "0.5 m");
+  ilaw_setup setup{};
+  given.give(setup);
+  ASSERT_EQ(setup.argument_count, 5U);
+  EXPECT_EQ(setup.arguments[0]->kind, ilaw_kind{ILAW_KIND_VALUE_NUMBER});
+  EXPECT_EQ(setup.arguments[0]->number, 0.3);
+  EXPECT_EQ(setup.arguments[1]->number, INFINITY);
+  EXPECT_EQ(setup.arguments[2]->number, -4.0);
+  EXPECT_EQ(setup.arguments[3]->kind, ilaw_kind{ILAW_KIND_VALUE_TEXT});
+  EXPECT_STREQ(setup.arguments[3]->text, "rough");
+  EXPECT_STREQ(setup.arguments[4]->text, "0.5 m");
+}
+
+TEST(Parameters, NameWhatATextMayBe) {
+  const DescribedLaw known;
+  for (const char* text : {"", "fast", "0.3x", " 0.3", "0.3 ", "0,3", "nan", "-inf", "1e999", "0x1p3"})
+    EXPECT_EQ(known.refusal_of("friction", text), std::string("law 'slide': parameter 'friction': found '") +
+                                                      text + "', expected a number or inf");
+  for (const char* text : {"2.5", "inf"})
+    EXPECT_EQ(known.refusal_of("count", text),
+              std::string("law 'slide': parameter 'count': found '") + text + "', expected a whole number");
+  EXPECT_EQ(known.refusal_of("finish", "Rough"),
+            "law 'slide': parameter 'finish': found 'Rough', expected one of smooth, rough");
+  EXPECT_EQ(known.refusal_of("fricton", "0.3"),
+            "law 'slide': unknown parameter 'fricton', expected one of friction, count, finish, newer");
 }
 
 std::string refusal_of(const std::vector<ilaw::parameters::axis>& axes, const std::vector<double>& values) {

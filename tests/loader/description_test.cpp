@@ -10,13 +10,16 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <string>
+#include <utility>
 
 namespace {
 
-using ilaw::loading::check_instance_info;
 using ilaw::loading::checked_plugin;
+using ilaw::loading::instance_descriptions;
 using ilaw::loading::refusal;
 using ilaw::loading::storage;
 
@@ -307,17 +310,74 @@ struct Instance {
   Instance& operator=(const Instance&) = delete;
 
   std::string answer() const {
-    storage kept;
-    const std::string file = "bonds.so";
-    ilaw_instance_info checked = info;
+    instance_descriptions known;
     try {
-      check_instance_info({file, law, ILAW_ABI_MINOR}, setup, checked, kept);
+      checked(known);
     } catch (const refusal& error) {
       return error.what();
     }
     return "";
   }
+  std::shared_ptr<const ilaw::loading::instance_description> checked(instance_descriptions& known) const {
+    return known.checked({"bonds.so", law, ILAW_ABI_MINOR}, setup, info);
+  }
 };
+
+// A host may make an instance for each node: 60 us each would be a minute for a million.
+TEST(InstanceDescriptions, AreCheckedOnceEach) {
+  Instance instance;
+  instance_descriptions known;
+  const auto first = instance.checked(known);
+  EXPECT_EQ(instance.checked(known), first);
+  instance.plain.number = 7.0;  // a value changes nothing of the description
+  EXPECT_EQ(instance.checked(known), first);
+}
+
+// In memory that the library uses again, at the same addresses.
+TEST(InstanceDescriptions, FollowEveryChange) {
+  Instance instance;
+  std::string unit = "m", name = "strength";
+  instance.second.unit = unit.c_str();
+  instance.names = {name.c_str(), name.c_str()};
+  instance_descriptions known;
+  const auto first = instance.checked(known);
+  const std::pair<const char*, std::function<void()>> changes[] = {
+      {"text", [&] { unit[0] = 's'; }},
+      {"shorter text", [&] { unit[0] = '\0'; }},
+      {"element", [&] { instance.second.flags = ILAW_FLAG_INTERNAL; }},
+      {"array", [&] { std::swap(instance.variables[0], instance.variables[1]); }},
+      {"amount", [&] { instance.given[0] = &instance.heat; }},
+      {"info", [&] { instance.info.state_version = 1; }},
+      {"law", [&] { instance.law.permissions = 0; }}};
+  auto last = first;
+  for (const auto& [what, change] : changes) {
+    change();
+    const auto now = instance.checked(known);
+    EXPECT_EQ(now == last, std::string(what) == "law") << what;
+    EXPECT_EQ(instance.checked(known), now) << what;
+    last = now;
+  }
+  EXPECT_STREQ(last->info.state_variables[0]->unit, "");
+  EXPECT_STREQ(last->info.amounts[0]->name, "heat");
+  EXPECT_EQ(last->info.state_version, 1U);
+  name[0] = 'S';
+  EXPECT_THROW(instance.checked(known), refusal);
+  instance.setup.dimension = 2;
+  EXPECT_THROW(instance.checked(known), refusal);
+}
+
+// A library that writes a new one for each instance.
+TEST(InstanceDescriptions, AreForgottenWhenTooMany) {
+  Instance instance;
+  instance_descriptions known;
+  const std::weak_ptr first = instance.checked(known);
+  for (std::uint32_t version = 1; version <= 8; ++version) {
+    EXPECT_FALSE(first.expired()) << version;
+    instance.info.state_version = version;
+    instance.checked(known);
+  }
+  EXPECT_TRUE(first.expired());
+}
 
 TEST(FaultyInstance, IsNamedWithWhatWasFoundAndExpected) {
   const std::string at = "bonds.so: law 'bond': instance: ";

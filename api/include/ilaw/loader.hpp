@@ -4,9 +4,13 @@
 
 #include <ilaw/loader.h>
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
+#include <locale>
 #include <memory>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -42,6 +46,28 @@ class parameters {
     made.text = choice;
     return *this;
   }
+  // A value as a user writes it, "0.3", "inf" or "moreau", by the law's description of the parameter. Throws
+  // error with what is allowed.
+  parameters& set(const ilaw_law& law, const std::string& name, const std::string& value) {
+    const ilaw_parameter& p = described(law, name);
+    if (p.kind > ILAW_KIND_INTEGER) {
+      bool known = p.kind != ILAW_KIND_CHOICE;  // of a newer minor version
+      for (std::uint32_t i = 0; i < p.choice_count; ++i) known = known || value == p.choices[i];
+      if (!known) refuse(law, name, value, "one of " + listed(p.choices, p.choice_count));
+      return text(name, value);
+    }
+    const bool has_infinity = (p.flags & ILAW_FLAG_ALLOWS_INFINITY) != 0;
+    if (has_infinity && value == "inf") return number(name, std::numeric_limits<double>::infinity());
+    std::istringstream digits(value);
+    digits.imbue(std::locale::classic());  // a decimal point in every country
+    double found = 0.0;
+    const bool is_number = digits >> std::noskipws >> found && digits.peek() == std::char_traits<char>::eof();
+    if (!is_number || (p.kind == ILAW_KIND_INTEGER && found != std::floor(found)))
+      refuse(law, name, value,
+             std::string(p.kind == ILAW_KIND_INTEGER ? "a whole number" : "a number") +
+                 (has_infinity ? " or inf" : ""));
+    return number(name, found);
+  }
   // The last axis varies fastest; throws error unless there is one value per point of the grid.
   parameters& table(const std::string& name, const std::vector<axis>& axes,
                     const std::vector<double>& values) {
@@ -62,8 +88,8 @@ class parameters {
     return *this;
   }
 
-  // Sets the arguments of a setup; they are valid until these parameters are changed, copied over or
-  // destroyed.
+  // Sets the arguments of a setup; they are valid until these parameters are changed, assigned to or
+  // destroyed. Moving these parameters elsewhere keeps them valid as long as the new ones live.
   void give(ilaw_setup& setup) {
     pointers_.clear();
     for (entry& one : entries_) pointers_.push_back(one.refer());
@@ -103,6 +129,27 @@ class parameters {
       return &argument;
     }
   };
+
+  static std::string listed(const char* const* names, std::uint32_t count) {
+    std::string list;
+    for (std::uint32_t i = 0; i < count; ++i) list += (i ? ", " : "") + std::string(names[i]);
+    return list;
+  }
+  [[noreturn]] static void refuse(const ilaw_law& law, const std::string& name, const std::string& found,
+                                  const std::string& allowed) {
+    throw error(ILAW_INVALID_PARAMETER, std::string("law '") + law.id + "': parameter '" + name +
+                                            "': found '" + found + "', expected " + allowed);
+  }
+  static const ilaw_parameter& described(const ilaw_law& law, const std::string& name) {
+    std::vector<const char*> names;
+    for (std::uint32_t i = 0; i < law.parameter_count; ++i) {
+      if (name == law.parameters[i]->name) return *law.parameters[i];
+      names.push_back(law.parameters[i]->name);
+    }
+    throw error(ILAW_INVALID_PARAMETER, std::string("law '") + law.id + "': unknown parameter '" + name +
+                                            "', expected one of " +
+                                            listed(names.data(), law.parameter_count));
+  }
 
   entry& add(const std::string& name, ilaw_kind kind) {
     entry& made = entries_.emplace_back();

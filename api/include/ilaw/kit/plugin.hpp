@@ -29,6 +29,10 @@ struct functions {
                                       char* text, std::size_t text_size) {
     message said(Law::card.id, text, text_size);
     if (!result) return ILAW_INVALID_ARGUMENT;
+    if (const char* cap = unknown_level()) {
+      *result = nullptr;
+      return said.refuse(ILAW_UNSUPPORTED, "ILAW_ISA is '%s', expected baseline, v3 or v4", cap);
+    }
     const ilaw_kit_walk* best = best_walks();
     return detail::create<Law>(id, setup, best ? best[Place] : nullptr, result, said);
   }

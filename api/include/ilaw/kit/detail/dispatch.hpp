@@ -1,11 +1,13 @@
 // dispatch.hpp - chooses, at create, the level whose compiled loops an instance will use.
-// ILAW_ISA=baseline|v3|v4 in the environment caps the choice: to test a level, or to compare.
+// ILAW_ISA=baseline|v3|v4 in the environment caps the choice: to test a level, or to compare. Other texts are
+// refused.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ilaw/ilaw.h>
 #include <ilaw/kit/detail/level.hpp>
 
+#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -68,14 +70,35 @@ inline processor this_processor() {
   return p;
 }
 
+// The text of ILAW_ISA when it names no level, otherwise null.
+inline const char* unknown_level() {
+  const char* cap = std::getenv("ILAW_ISA");
+  for (const char* known : {"baseline", "v3", "v4"})
+    if (cap && std::strcmp(cap, known) == 0) return nullptr;
+  return cap;
+}
+
 #if defined(ILAW_KIT_OTHER_LEVELS)
+// Bits of the levels that the processor serves, and bit 0 once it was asked: CPUID traps under a hypervisor,
+// for 40 us. Hidden, because g++ shares other variables of headers among libraries, and never unloads these.
+[[gnu::visibility("hidden")]] inline constinit std::atomic<std::uint32_t> known_levels{0};
+
+inline std::uint32_t levels_served() {
+  std::uint32_t served = known_levels.load(std::memory_order_relaxed);
+  if (served != 0) return served;
+  const processor here = this_processor();
+  served = bits({0}) | (serves(here, level_v3) ? bits({3}) : 0) | (serves(here, level_v4) ? bits({4}) : 0);
+  known_levels.store(served, std::memory_order_relaxed);
+  return served;
+}
+
 struct other_level {
   const char* name;
-  const processor& needs;
+  std::uint32_t bit;
   const ilaw_kit_walk* (*walks)();
 };
-inline constexpr other_level other_levels[] = {{"v4", level_v4, ilaw_kit_walks_v4},
-                                               {"v3", level_v3, ilaw_kit_walks_v3}};
+inline constexpr other_level other_levels[] = {{"v4", bits({4}), ilaw_kit_walks_v4},
+                                               {"v3", bits({3}), ilaw_kit_walks_v3}};
 #endif
 
 // The walks of the best level that was compiled, that the processor has and the environment allows; null: the
@@ -86,9 +109,8 @@ inline const ilaw_kit_walk* best_walks() {
   const auto allowed = [cap](const char* level) {
     return !cap || (std::strcmp(cap, "baseline") != 0 && std::strcmp(cap, level) >= 0);
   };
-  const processor here = this_processor();
   for (const other_level& level : other_levels)
-    if (level.walks && allowed(level.name) && serves(here, level.needs)) return level.walks();
+    if (level.walks && allowed(level.name) && (levels_served() & level.bit) != 0) return level.walks();
 #endif
   return nullptr;
 }
