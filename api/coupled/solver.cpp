@@ -3,6 +3,8 @@
 
 #include "sizes.hpp"
 
+#include <ilaw/decimal_text.hpp>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -289,13 +291,13 @@ void Solver::explain(const Block& worst, std::size_t lane, ilaw_coupled_report& 
   if (is_solved && !report.other_law) return;
   const char *law = problem_.group(worst).law_id(), *other = report.other_law;
   std::snprintf(message_.data(), message_.size(),
-                "%s%s%s%s%s after %u iterations: contact %lld of group %lld (law '%s') is off by %.3g; "
-                "%lld contacts are coupled, with masses of 1:%.2g",
+                "%s%s%s%s%s after %u iterations: contact %lld of group %lld (law '%s') is off by %s; "
+                "%lld contacts are coupled, with masses of 1:%s",
                 other ? "laws '" : "contacts are not solved", other ? law : "", other ? "' and '" : "",
                 other ? other : "", other ? "' are incompatible" : "", report.sweeps,
                 static_cast<long long>(report.worst_contact), static_cast<long long>(report.worst_group), law,
-                report.residual * report.speed, static_cast<long long>(report.island_contacts),
-                report.mass_ratio);
+                decimal_text(report.residual * report.speed, 3).get(),
+                static_cast<long long>(report.island_contacts), decimal_text(report.mass_ratio, 2).get());
   report.message = message_.data();
 }
 

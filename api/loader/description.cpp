@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "description.hpp"
 
+#include <ilaw/decimal_text.hpp>
+
 #include <cmath>
 #include <set>
 #include <string>
@@ -35,6 +37,8 @@ bool in_range(const ilaw_parameter& p, double value) {
   return above && value <= p.maximum;
 }
 
+std::string text_of(double value) { return decimal_text(value).get(); }
+
 void check_choices(const checker& check, ilaw_parameter& p) {
   p.choices = check.array(p.choices, p.choice_count, "choices");
   check.texts(p.choices, p.choice_count, "a choice");
@@ -43,7 +47,7 @@ void check_choices(const checker& check, ilaw_parameter& p) {
   const double chosen = p.default_value;
   if (!has(p, ILAW_FLAG_REQUIRED) &&
       !(chosen >= 0.0 && chosen < p.choice_count && chosen == std::floor(chosen)))
-    check.refuse("default " + std::to_string(chosen) + " is no index of its choices");
+    check.refuse("default " + text_of(chosen) + " is no index of its choices");
 }
 
 void check_axes(const checker& check, ilaw_parameter& p) {
@@ -64,10 +68,9 @@ void check_parameter(const checker& check, ilaw_parameter& p) {
   check.prose(p.doc, "doc");
   check_choices(check, p);
   if (!(p.minimum <= p.maximum))
-    check.refuse("minimum " + std::to_string(p.minimum) + " is not below maximum " +
-                 std::to_string(p.maximum));
+    check.refuse("minimum " + text_of(p.minimum) + " is not below maximum " + text_of(p.maximum));
   if (!has(p, ILAW_FLAG_REQUIRED) && !in_range(p, p.default_value))
-    check.refuse("default " + std::to_string(p.default_value) + " lies outside its own range");
+    check.refuse("default " + text_of(p.default_value) + " lies outside its own range");
   check_axes(check, p);
 }
 

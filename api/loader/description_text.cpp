@@ -3,9 +3,9 @@
 
 #include "readable.hpp"
 
+#include <ilaw/decimal_text.hpp>
+
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <initializer_list>
 #include <limits>
 
@@ -141,14 +141,7 @@ std::string quoted_text(std::string_view text) {
 std::string number_text(double value) {
   if (std::isnan(value)) return "null";
   if (std::isinf(value)) return value > 0 ? "\"inf\"" : "\"-inf\"";
-  char text[32];
-  for (int digits = 15; digits <= 17; ++digits) {
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    if (std::strtod(text, nullptr) == value) break;
-  }
-  for (char& c : text)  // the host's locale may have a decimal comma
-    if (c == ',') c = '.';
-  return text;
+  return decimal_text(value).get();
 }
 
 std::string description_text(const ilaw_plugin& plugin) {

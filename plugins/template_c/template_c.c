@@ -5,21 +5,21 @@
 
 #include <float.h>
 
-enum { TEMPERATURE, FRICTION, PARTITION };
+enum { FRICTION, TEMPERATURE, PARTITION };
 enum { HEAT, COUNTERPART_HEAT };
 
 static const char* const axes[] = {"slip_speed", "temperature", "time"};
+static const ilaw_parameter friction = ILAW_PLAIN_PARAMETER(
+    "friction", "mu", "1", "Coefficient of friction; its axis slip_speed is the speed after the step.",
+    .maximum = 1e6, .flags = ILAW_FLAG_REQUIRED | ILAW_FLAG_ALLOWS_PER_NODE, .axes = axes, .axis_count = 3);
 static const ilaw_parameter temperature =
     ILAW_PLAIN_PARAMETER("temperature", "T", "K", "Temperature of the body at the node.", .maximum = DBL_MAX,
                          .default_value = 293.15, .flags = ILAW_FLAG_FIELD | ILAW_FLAG_ALLOWS_PER_NODE,
                          .axes = axes + 2, .axis_count = 1);
-static const ilaw_parameter friction = ILAW_PLAIN_PARAMETER(
-    "friction", "mu", "1", "Coefficient of friction; its axis slip_speed is the speed after the step.",
-    .maximum = 1e6, .flags = ILAW_FLAG_REQUIRED | ILAW_FLAG_ALLOWS_PER_NODE, .axes = axes, .axis_count = 3);
 static const ilaw_parameter partition =
     ILAW_PLAIN_PARAMETER("partition", "p", "1", "Part of the heat that flows into the body.", .maximum = 1.0,
                          .default_value = 0.5);
-static const ilaw_parameter* const parameters[] = {&temperature, &friction, &partition};
+static const ilaw_parameter* const parameters[] = {&friction, &temperature, &partition};
 
 static const ilaw_amount heat = {sizeof heat, 0, "heat", "J", "Heat of friction into the body."};
 static const ilaw_amount counterpart_heat = {sizeof heat, 0, "counterpart_heat", "J",
@@ -79,11 +79,13 @@ static const char* step(const ilaw_node* node, ilaw_node_result* result) {
 }
 
 static const ilaw_plain_law law = {
-    {ILAW_PLAIN_LAW, .id = "template_c", .title = "Friction by slip speed and temperature",
-     .doc = "Contact without restitution; a coefficient of friction from a table, and the heat of friction.",
-     .dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3,
-     .inputs = ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS,
-     .permissions = ILAW_MAY_SKIP_FRESH | ILAW_MAY_SKIP_FREE, ILAW_PLAIN_LIST(parameters),
-     ILAW_PLAIN_LIST(amounts), ILAW_PLAIN_LIST(references)},
-    step};
+    .law =
+        {ILAW_PLAIN_LAW, .id = "template_c", .title = "Friction by slip speed and temperature",
+         .doc =
+             "Contact without restitution; a coefficient of friction from a table, and the heat of friction.",
+         .dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3,
+         .inputs = ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS,
+         .permissions = ILAW_MAY_SKIP_FRESH | ILAW_MAY_SKIP_FREE, ILAW_PLAIN_LIST(parameters),
+         ILAW_PLAIN_LIST(amounts), ILAW_PLAIN_LIST(references)},
+    .step = step};
 ILAW_PLAIN_LIBRARY("template_c", "1.0.0", "ilaw", "BSD-3-Clause", &law.law)

@@ -227,17 +227,17 @@ const Fault faulty_descriptions[] = {
     {"UnknownFlags", [](Description& d) { d.number.flags = 64; },
      "law 'bond': parameter 'strength': flags is 64, expected only the bits of 63"},
     {"RangeUpsideDown", [](Description& d) { d.number.minimum = 2.0; },
-     "law 'bond': parameter 'strength': minimum 2.000000 is not below maximum 1.000000"},
+     "law 'bond': parameter 'strength': minimum 2 is not below maximum 1"},
     {"RangeOfNoNumbers", [](Description& d) { d.number.maximum = NAN; },
-     "law 'bond': parameter 'strength': minimum 0.000000 is not below maximum nan"},
+     "law 'bond': parameter 'strength': minimum 0 is not below maximum nan"},
     {"DefaultAtAnExcludedMinimum",
      [](Description& d) {
        d.number.flags |= ILAW_FLAG_EXCLUDES_MINIMUM;
        d.number.default_value = 0.0;
      },
-     "law 'bond': parameter 'strength': default 0.000000 lies outside its own range"},
+     "law 'bond': parameter 'strength': default 0 lies outside its own range"},
     {"DefaultBelow", [](Description& d) { d.number.default_value = -1.0; },
-     "law 'bond': parameter 'strength': default -1.000000 lies outside its own range"},
+     "law 'bond': parameter 'strength': default -1 lies outside its own range"},
     {"DefaultInfinite", [](Description& d) { d.number.default_value = infinity; },
      "law 'bond': parameter 'strength': default inf lies outside its own range"},
     {"DefaultInfiniteWhereAllowed",
@@ -255,11 +255,11 @@ const Fault faulty_descriptions[] = {
     {"NoChoices", [](Description& d) { d.choice.choice_count = 0; },
      "law 'bond': parameter 'surface': choice_count is 0, expected at least 1"},
     {"DefaultBetweenChoices", [](Description& d) { d.choice.default_value = 0.5; },
-     "law 'bond': parameter 'surface': default 0.500000 is no index of its choices"},
+     "law 'bond': parameter 'surface': default 0.5 is no index of its choices"},
     {"DefaultBelowChoices", [](Description& d) { d.choice.default_value = -1.0; },
-     "law 'bond': parameter 'surface': default -1.000000 is no index of its choices"},
+     "law 'bond': parameter 'surface': default -1 is no index of its choices"},
     {"DefaultBeyondChoices", [](Description& d) { d.choice.default_value = 2.0; },
-     "law 'bond': parameter 'surface': default 2.000000 is no index of its choices"},
+     "law 'bond': parameter 'surface': default 2 is no index of its choices"},
     {"ChoiceNull", [](Description& d) { d.choices[1] = nullptr; },
      "law 'bond': parameter 'surface': a choice is null, expected a text"},
     {"VariableTwice", [](Description& d) { d.law.state_variable_count = 2; },
@@ -414,7 +414,7 @@ TEST(FaultyInstance, IsNamedWithWhatWasFoundAndExpected) {
             }),
             "");
   EXPECT_EQ(said_of([](Instance& i) { i.info.balance_inputs = 1U << 20; }),
-            "bonds.so: law 'bond': reads inputs 1048576, expected only the bits of 31");
+            "bonds.so: law 'bond': reads inputs 1048576, expected only the bits of 63");
   EXPECT_EQ(said_of([](Instance& i) { i.info.permissions = ILAW_MAY_SKIP_FREE; }),
             at + "permissions is 2, expected at least the law's, 1");
   EXPECT_EQ(said_of([](Instance& i) { i.info.permissions = 9; }),

@@ -3,7 +3,7 @@
  * arrays of any layout and number type, both frames, bad nodes, amounts, the floating-point environment.
  *
  *   static const char* step(const ilaw_node* node, ilaw_node_result* result) { ... }
- *   static const ilaw_plain_law brake = {{ILAW_PLAIN_LAW, .id = "brake", ...}, step};
+ *   static const ilaw_plain_law brake = {.law = {ILAW_PLAIN_LAW, .id = "brake", ...}, .step = step};
  *   ILAW_PLAIN_LIBRARY("brake", "1.0.0", "vendor", "licence", &brake.law)      one law or several
  *
  * Serves isotropic laws (the tangent of a host is not read) with scalar or transverse H, also with spins
@@ -16,11 +16,15 @@
 #ifndef ILAW_PLAIN_C_H
 #define ILAW_PLAIN_C_H
 
+#ifndef ILAW_BUILDING_PLUGIN
 #define ILAW_BUILDING_PLUGIN
+#endif
 #include <ilaw/ilaw.h>
 
 #include <fenv.h>
+#include <float.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,7 +32,8 @@
 #include <xmmintrin.h>
 #endif
 
-enum { ILAW_PLAIN_MAX = 16 }; /* parameters, state variables, amounts of a law */
+enum { ILAW_PLAIN_MAX = 16 };          /* parameters, state variables, amounts of a law */
+enum { ILAW_PLAIN_MAX_STRUCT = 4096 }; /* no struct of any version is larger */
 
 /* A node in the axes of the host; n is the normal, vectors have zeros beyond the dimension. */
 typedef struct ilaw_node {
@@ -37,6 +42,7 @@ typedef struct ilaw_node {
   double h_N, h_T;    /* H = h_N n n^T + h_T (I - n n^T) */
   double k, j_N, j_T; /* where H has spins, as they have; all 0 elsewhere */
   double n[3], v_free[3], v_previous[3], spin_free[3], spin_previous[3];
+  double v_smooth[3]; /* v_free where the host gives none, or the law does not read it */
   double state[ILAW_PLAIN_MAX];
   double value[ILAW_PLAIN_MAX]; /* of each parameter of the law; see ilaw_value for tables */
   const ilaw_instance* instance;
@@ -49,20 +55,25 @@ typedef struct ilaw_node_result {
   ilaw_status status;
 } ilaw_node_result;
 
-/* Null, or why the node's input is bad: a static text. */
+/* Null, or why the node's input is bad: a static text. A result with a NaN, an overflow, a negative
+ * dissipation or an unknown status, or one that breaks the law's own capabilities and permissions, makes
+ * the node bad, too. */
 typedef const char* (*ilaw_plain_step)(const ilaw_node* node, ilaw_node_result* result);
 
 typedef struct ilaw_plain_law {
   ilaw_law law;
   ilaw_plain_step step;
+  uint32_t state_version; /* raise it whenever step interprets a stored state differently */
 } ilaw_plain_law;
 
-/* Axis of a table: a place in the axes of the parameter, and the parameter that is this field, or -1. */
+/* Axis of a table: a place in the axes of the parameter, and where its number comes from: the parameter that
+ * is this field, or ILAW_PLAIN_TIME, or ILAW_PLAIN_COMPUTED. */
+enum { ILAW_PLAIN_TIME = -1, ILAW_PLAIN_COMPUTED = -2 };
 struct ilaw_plain_table {
   uint32_t axis_count, place[3];
-  int field[3];
+  int source[3];
   uint64_t count[3];
-  double *points[3], *values;
+  double *points[3], *values; /* in one block, which begins at points[0] */
 };
 
 struct ilaw_instance {
@@ -76,6 +87,7 @@ struct ilaw_instance {
   uint32_t slot[ILAW_PLAIN_MAX]; /* among the arrays per node */
   double number[ILAW_PLAIN_MAX];
   struct ilaw_plain_table table[ILAW_PLAIN_MAX];
+  int rank[ILAW_PLAIN_MAX]; /* read first are numbers (0), then tables (1), then tables over these (2) */
   const char* per_node[ILAW_PLAIN_MAX];
 };
 
@@ -122,13 +134,67 @@ static inline void ilaw_put(const ilaw_output* a, int64_t node, int64_t c, doubl
 static inline int64_t ilaw_node_of(const ilaw_batch* b, int64_t k) {
   return b->index ? (int64_t)b->index[k] - b->index_base : b->index64 ? b->index64[k] - b->index_base : k;
 }
-/* Checks the pointers of an array: the mistake, or null. */
-static inline const char* ilaw_plain_wrong_array(const ilaw_instance* own, const void* values,
-                                                 const void* floats, int required) {
-  if (!values && !floats) return required ? "an array is missing" : NULL;
-  const int is_float = own->numbers == ILAW_NUMBERS_FLOAT;
-  return (is_float ? floats && !values : values && !floats) ? NULL
-                                                            : "an array is not of the setup's number type";
+/* Checks the pointers of an array: the mistake, or null. missing: null for an array that may be absent. */
+static inline const char* ilaw_plain_wrong_array(int is_float, const void* values, const void* floats,
+                                                 const char* missing) {
+  if (missing && !(is_float ? floats : values)) return missing;
+  return (is_float ? values : floats) ? "an array is of other numbers than the setup's, or has both pointers"
+                                      : NULL;
+}
+/* Whether a writer of ABI 1 can have set this struct_size. */
+static inline int ilaw_plain_is_sized(uint32_t struct_size, size_t least) {
+  return struct_size >= least && struct_size <= ILAW_PLAIN_MAX_STRUCT;
+}
+
+/* ---- messages ----------------------------------------------------------------------------------- */
+
+/* One line for the caller of create; text that does not fit is cut. */
+struct ilaw_plain_message {
+  char* text;
+  size_t size, used;
+};
+static inline void ilaw_plain_add(struct ilaw_plain_message* m, const char* format, ...) {
+  va_list values;
+  if (m->used + 1 >= m->size) return;
+  va_start(values, format);
+  const int length = vsnprintf(m->text + m->used, m->size - m->used, format, values);
+  va_end(values);
+  if (length > 0) m->used += (size_t)length;
+}
+#define ILAW_PLAIN_REFUSE(code, m, ...) (ilaw_plain_add(m, __VA_ARGS__), (code))
+
+/* With as few digits as read back to the same number, and with a dot whatever the locale of the host has. */
+static inline void ilaw_plain_add_number(struct ilaw_plain_message* m, double x) {
+  char text[48], *to = text;
+  int digits = 15;
+  do snprintf(text, sizeof text, "%.*g", digits, x);
+  while (digits++ < 17 && strtod(text, NULL) != x);
+  for (const char* c = text; *c; ++c)
+    if (strchr("+-0123456789einfa", *c))
+      *to++ = *c;
+    else if (to == text || to[-1] != '.')
+      *to++ = '.';
+  ilaw_plain_add(m, "%.*s", (int)(to - text), text);
+}
+
+/* What may be given to a parameter. */
+static inline void ilaw_plain_add_expected(struct ilaw_plain_message* m, const ilaw_parameter* p) {
+  const int is_endless = p->flags & ILAW_FLAG_ALLOWS_INFINITY || p->maximum == DBL_MAX;
+  if (p->kind == ILAW_KIND_CHOICE) {
+    ilaw_plain_add(m, "expected one of ");
+    for (uint32_t c = 0; c < p->choice_count; ++c)
+      ilaw_plain_add(m, "%s\"%s\"", c ? ", " : "", p->choices[c]);
+    return;
+  }
+  ilaw_plain_add(m, "expected a %snumber in %s", p->kind == ILAW_KIND_INTEGER ? "whole " : "",
+                 p->flags & ILAW_FLAG_EXCLUDES_MINIMUM ? "(" : "[");
+  ilaw_plain_add_number(m, p->minimum);
+  ilaw_plain_add(m, ", ");
+  if (is_endless)
+    ilaw_plain_add(m, "inf");
+  else
+    ilaw_plain_add_number(m, p->maximum);
+  ilaw_plain_add(m, is_endless && !(p->flags & ILAW_FLAG_ALLOWS_INFINITY) ? ")" : "]");
 }
 
 /* ---- parameters --------------------------------------------------------------------------------- */
@@ -145,10 +211,9 @@ static inline double ilaw_value(const ilaw_node* node, uint32_t p, const double*
   uint64_t low[3] = {0, 0, 0};
   double part[3] = {0.0, 0.0, 0.0}, corner[8];
   for (uint32_t a = 0; a < t->axis_count; ++a) {
-    const char* name = node->instance->plain->law.parameters[p]->axes[t->place[a]];
-    const double x = t->field[a] >= 0            ? node->value[t->field[a]]
-                     : strcmp(name, "time") == 0 ? node->time
-                                                 : computed[t->place[a]];
+    const double x = t->source[a] >= 0                 ? node->value[t->source[a]]
+                     : t->source[a] == ILAW_PLAIN_TIME ? node->time
+                                                       : computed[t->place[a]];
     const double* points = t->points[a];
     uint64_t high = t->count[a] - 1;
     if (high == 0) continue;
@@ -180,62 +245,117 @@ static inline int ilaw_plain_is_allowed(const ilaw_parameter* p, double x) {
   return (p->flags & ILAW_FLAG_EXCLUDES_MINIMUM ? x > p->minimum : x >= p->minimum) && x <= p->maximum;
 }
 
-static inline double* ilaw_plain_copy(const double* x, uint64_t count) {
-  double* copy = (double*)malloc(count * sizeof(double));
-  if (copy) memcpy(copy, x, count * sizeof(double));
-  return copy;
+static inline ilaw_result ilaw_plain_check_number(const ilaw_parameter* p, double x,
+                                                  struct ilaw_plain_message* m) {
+  if (ilaw_plain_is_allowed(p, x)) return ILAW_OK;
+  ilaw_plain_add(m, "parameter '%s' = ", p->name);
+  ilaw_plain_add_number(m, x);
+  ilaw_plain_add(m, " is not allowed: ");
+  ilaw_plain_add_expected(m, p);
+  return ILAW_INVALID_PARAMETER;
 }
 
-/* Null, or what is wrong with the table; empty where there is no memory. */
-static inline const char* ilaw_plain_keep_table(ilaw_instance* own, uint32_t p, const ilaw_argument* a) {
+/* Checks axis i of the table of parameter p. */
+static inline ilaw_result ilaw_plain_keep_axis(ilaw_instance* own, uint32_t p, const ilaw_axis* axis,
+                                               uint32_t i, struct ilaw_plain_message* m) {
   const ilaw_law* law = &own->plain->law;
   const ilaw_parameter* known = law->parameters[p];
   struct ilaw_plain_table* t = &own->table[p];
-  uint64_t size = 1;
-  if (a->axis_count < 1 || a->axis_count > 3 || !a->axes || !a->values) return "must have one to three axes";
-  for (uint32_t i = 0; i < a->axis_count; ++i, ++t->axis_count) {
-    const ilaw_axis* axis = a->axes[i];
-    uint32_t place = 0;
-    if (!axis || axis->struct_size < ILAW_AXIS_SIZE_1_0 || !axis->name || !axis->points || axis->count < 1)
-      return "has an axis without a name or points";
-    if (axis->count > ILAW_TABLE_MAX_VALUES / size) return "has more than 2^24 values";
-    size *= axis->count;
-    while (place < known->axis_count && strcmp(known->axes[place], axis->name) != 0) ++place;
-    if (place == known->axis_count) return "cannot be a table over this axis";
-    for (uint32_t j = 0; j < i; ++j)
-      if (t->place[j] == place) return "has an axis twice";
-    for (uint64_t k = 0; k < axis->count; ++k)
-      if (!isfinite(axis->points[k]) || (k > 0 && !(axis->points[k] > axis->points[k - 1])))
-        return "has an axis whose points do not increase";
-    t->place[i] = place, t->count[i] = axis->count, t->field[i] = -1;
-    for (uint32_t f = 0; f < law->parameter_count; ++f)
-      if (strcmp(law->parameters[f]->name, axis->name) == 0) t->field[i] = (int)f;
-    if (!(t->points[i] = ilaw_plain_copy(axis->points, axis->count))) return "";
+  uint32_t place = 0;
+  while (place < known->axis_count && strcmp(known->axes[place], axis->name) != 0) ++place;
+  if (place == known->axis_count) {
+    ilaw_plain_add(m, "parameter '%s': axis '%s' of the table is unknown: expected one of ", known->name,
+                   axis->name);
+    for (uint32_t k = 0; k < known->axis_count; ++k)
+      ilaw_plain_add(m, "%s'%s'", k ? ", " : "", known->axes[k]);
+    return ILAW_INVALID_PARAMETER;
   }
-  for (uint64_t k = 0; k < size; ++k)
-    if (!ilaw_plain_is_allowed(known, a->values[k])) return "has a value in its table that is out of range";
-  return (t->values = ilaw_plain_copy(a->values, size)) ? NULL : "";
+  for (uint32_t j = 0; j < i; ++j)
+    if (t->place[j] == place)
+      return ILAW_PLAIN_REFUSE(ILAW_INVALID_PARAMETER, m, "parameter '%s': the table has twice the axis %s",
+                               known->name, axis->name);
+  for (uint64_t k = 0; k < axis->count; ++k)
+    if (!isfinite(axis->points[k]) || (k > 0 && !(axis->points[k] > axis->points[k - 1]))) {
+      ilaw_plain_add(m, "parameter '%s': point %llu of axis '%s' is ", known->name, (unsigned long long)k,
+                     axis->name);
+      ilaw_plain_add_number(m, axis->points[k]);
+      return ILAW_PLAIN_REFUSE(ILAW_INVALID_PARAMETER, m, ": expected finite, increasing points");
+    }
+  t->place[i] = place, t->count[i] = axis->count;
+  t->source[i] = strcmp(axis->name, "time") == 0 ? ILAW_PLAIN_TIME : ILAW_PLAIN_COMPUTED;
+  for (uint32_t f = 0; f < law->parameter_count; ++f)
+    if (strcmp(law->parameters[f]->name, axis->name) == 0) t->source[i] = (int)f;
+  return ILAW_OK;
 }
 
-static inline const char* ilaw_plain_keep(ilaw_instance* own, uint32_t p, const ilaw_argument* a) {
+static inline ilaw_result ilaw_plain_keep_table(ilaw_instance* own, uint32_t p, const ilaw_argument* a,
+                                                struct ilaw_plain_message* m) {
+  const ilaw_parameter* known = own->plain->law.parameters[p];
+  struct ilaw_plain_table* t = &own->table[p];
+  const char* wrong = !a->values ? "no values" : NULL;
+  uint64_t size = 1, stored = 0;
+  if (a->axis_count < 1 || a->axis_count > 3 || !a->axes)
+    wrong = "no axis or more than three, expected 1 to 3";
+  for (uint32_t i = 0; !wrong && i < a->axis_count; ++i) {
+    const ilaw_axis* axis = a->axes[i];
+    if (!axis || !ilaw_plain_is_sized(axis->struct_size, ILAW_AXIS_SIZE_1_0))
+      wrong = "an axis that is null or whose struct_size is of no version";
+    else if (!axis->name || !axis->points || axis->count < 1)
+      wrong = "an axis without a name or point, expected at least 1 point";
+    else if (axis->count > ILAW_TABLE_MAX_VALUES / size)
+      wrong = "more than 16777216 values";
+    if (wrong) break;
+    const ilaw_result code = ilaw_plain_keep_axis(own, p, axis, i, m);
+    if (code != ILAW_OK) return code;
+    size *= axis->count, stored += axis->count;
+  }
+  if (wrong)
+    return ILAW_PLAIN_REFUSE(ILAW_INVALID_PARAMETER, m, "parameter '%s': the table has %s", known->name,
+                             wrong);
+  for (uint64_t k = 0; k < size; ++k) {
+    const ilaw_result code = ilaw_plain_check_number(known, a->values[k], m);
+    if (code != ILAW_OK) return code;
+  }
+  double* memory = (double*)malloc((stored + size) * sizeof(double));
+  if (!memory) return ILAW_PLAIN_REFUSE(ILAW_OUT_OF_MEMORY, m, "out of memory");
+  t->axis_count = a->axis_count;
+  for (uint32_t i = 0; i < t->axis_count; memory += t->count[i++])
+    t->points[i] = (double*)memcpy(memory, a->axes[i]->points, t->count[i] * sizeof(double));
+  t->values = (double*)memcpy(memory, a->values, size * sizeof(double));
+  return ILAW_OK;
+}
+
+static inline ilaw_result ilaw_plain_keep(ilaw_instance* own, uint32_t p, const ilaw_argument* a,
+                                          struct ilaw_plain_message* m) {
+  static const char* const kinds[] = {"a number", "a text", "a table", "a value per node"};
   const ilaw_parameter* known = own->plain->law.parameters[p];
   const int is_choice = known->kind == ILAW_KIND_CHOICE;
-  if (own->given[p]++) return "is given twice";
+  const char* text = a->kind == ILAW_KIND_VALUE_TEXT && a->text ? a->text : NULL;
+  if (own->given[p]++)
+    return ILAW_PLAIN_REFUSE(ILAW_INVALID_PARAMETER, m, "parameter '%s' is given twice", known->name);
   if (known->flags & ILAW_FLAG_NEEDS_SPINS && own->form != ILAW_DELASSUS_TRANSVERSE_SPIN)
-    return "needs spins, which this form of H has not";
+    return ILAW_PLAIN_REFUSE(
+        ILAW_INVALID_PARAMETER, m,
+        "parameter '%s' needs spins, form %u of H has none: expected 16 (transverse_spin)", known->name,
+        own->form);
   own->kind[p] = a->kind, own->number[p] = a->number;
-  if (a->kind == ILAW_KIND_VALUE_NUMBER && !is_choice)
-    return ilaw_plain_is_allowed(known, a->number) ? NULL : "is out of range";
-  if (a->kind == ILAW_KIND_VALUE_TEXT && is_choice && a->text)
-    for (uint32_t c = 0; c < known->choice_count; ++c)
-      if (strcmp(known->choices[c], a->text) == 0) return own->number[p] = c, NULL;
-  if (is_choice) return "is none of its choices";
-  if (a->kind == ILAW_KIND_VALUE_TABLE) return ilaw_plain_keep_table(own, p, a);
-  if (a->kind != ILAW_KIND_VALUE_PER_NODE || !(known->flags & ILAW_FLAG_ALLOWS_PER_NODE))
-    return "cannot be given in this way";
-  own->slot[p] = own->per_node_count;
-  own->per_node[own->per_node_count++] = known->name;
-  return NULL;
+  if (a->kind == ILAW_KIND_VALUE_NUMBER && !is_choice) return ilaw_plain_check_number(known, a->number, m);
+  for (uint32_t c = 0; is_choice && text && c < known->choice_count; ++c)
+    if (strcmp(known->choices[c], text) == 0) return own->number[p] = c, ILAW_OK;
+  if (a->kind == ILAW_KIND_VALUE_TABLE && known->axis_count > 0) return ilaw_plain_keep_table(own, p, a, m);
+  if (a->kind == ILAW_KIND_VALUE_PER_NODE && known->flags & ILAW_FLAG_ALLOWS_PER_NODE) {
+    own->slot[p] = own->per_node_count;
+    own->per_node[own->per_node_count++] = known->name;
+    return ILAW_OK;
+  }
+  if (is_choice && text)
+    ilaw_plain_add(m, "parameter '%s' = \"%s\" is not allowed: ", known->name, text);
+  else
+    ilaw_plain_add(m, "parameter '%s' was given as %s%s%s%s: ", known->name,
+                   a->kind < sizeof kinds / sizeof *kinds ? kinds[a->kind] : "a value of unknown kind",
+                   text ? " (\"" : "", text ? text : "", text ? "\")" : "");
+  ilaw_plain_add_expected(m, known);
+  return ILAW_INVALID_PARAMETER;
 }
 
 /* ---- the floating-point environment -------------------------------------------------------------- */
@@ -252,91 +372,126 @@ static inline void ilaw_plain_enter(fenv_t* host) {
 /* ---- instances ---------------------------------------------------------------------------------- */
 
 static inline void ILAW_CALL ilaw_plain_destroy(ilaw_instance* own) {
-  for (uint32_t p = 0; own && p < ILAW_PLAIN_MAX; ++p) {
-    free(own->table[p].values);
-    for (int a = 0; a < 3; ++a) free(own->table[p].points[a]);
-  }
+  for (uint32_t p = 0; own && p < ILAW_PLAIN_MAX; ++p) free(own->table[p].points[0]);
   free(own);
 }
 
-static inline ilaw_result ilaw_plain_refuse(ilaw_result code, char* message, size_t size, const char* id,
-                                            const char* why) {
-  if (message && size > 0) snprintf(message, size, "%s: %s", id, why);
-  return code;
-}
-
-/* Value and range of a number stand behind what is wrong. */
-static inline ilaw_result ilaw_plain_refuse_argument(const ilaw_instance* own, const char* name, int p,
-                                                     const char* why, char* message, size_t size) {
-  const ilaw_parameter* known = p < 0 ? NULL : own->plain->law.parameters[p];
-  char range[160] = "";
-  if (!*why) return ilaw_plain_refuse(ILAW_OUT_OF_MEMORY, message, size, own->plain->law.id, "out of memory");
-  if (known && own->given[p] && own->kind[p] == ILAW_KIND_VALUE_NUMBER)
-    snprintf(range, sizeof range, ": found %.17g, expected %s%g to %g%s", own->number[p],
-             known->flags & ILAW_FLAG_EXCLUDES_MINIMUM ? "above " : "", known->minimum, known->maximum,
-             known->flags & ILAW_FLAG_ALLOWS_INFINITY ? " or inf" : "");
-  if (message && size > 0)
-    snprintf(message, size, "%s: parameter '%.80s' %s%s", own->plain->law.id, name, why, range);
-  return ILAW_INVALID_PARAMETER;
-}
-
-static inline ilaw_result ilaw_plain_keep_all(ilaw_instance* own, const ilaw_setup* s, char* message,
-                                              size_t size) {
+/* The order in which parameters are read. A field that is an axis must be given, and not as a table over more
+ * than time: others may not have been read before it. */
+static inline ilaw_result ilaw_plain_order(ilaw_instance* own, struct ilaw_plain_message* m) {
   const ilaw_law* law = &own->plain->law;
+  for (uint32_t p = 0; p < law->parameter_count; ++p)
+    for (uint32_t a = 0; a < own->table[p].axis_count; ++a) {
+      const int source = own->table[p].source[a], rank = source == ILAW_PLAIN_TIME ? 1 : 2;
+      if (own->rank[p] < rank) own->rank[p] = rank;
+    }
+  for (uint32_t p = 0; p < law->parameter_count; ++p)
+    for (uint32_t a = 0; a < own->table[p].axis_count; ++a) {
+      const int field = own->table[p].source[a];
+      if (field >= 0 && (!own->given[field] || own->rank[field] > 1))
+        return ILAW_PLAIN_REFUSE(ILAW_INVALID_PARAMETER, m,
+                                 "parameter '%s' is a table over '%s': expected a value, a value per node or "
+                                 "a table over time for that",
+                                 law->parameters[p]->name, law->parameters[field]->name);
+    }
+  return ILAW_OK;
+}
+
+static inline ilaw_result ilaw_plain_keep_all(ilaw_instance* own, const ilaw_setup* s,
+                                              struct ilaw_plain_message* m) {
+  const ilaw_law* law = &own->plain->law;
+  if (s->argument_count && !s->arguments)
+    return ILAW_PLAIN_REFUSE(ILAW_INVALID_ARGUMENT, m, "arguments is null, expected %u pointers",
+                             s->argument_count);
   for (uint32_t p = 0; p < law->parameter_count; ++p) own->number[p] = law->parameters[p]->default_value;
   for (uint32_t i = 0; i < s->argument_count; ++i) {
     const ilaw_argument* a = s->arguments[i];
     uint32_t p = 0;
-    if (!a || a->struct_size < ILAW_ARGUMENT_SIZE_1_0 || !a->name)
-      return ilaw_plain_refuse(ILAW_INVALID_ARGUMENT, message, size, law->id,
-                               "an argument is null or too small");
+    if (!a || !ilaw_plain_is_sized(a->struct_size, ILAW_ARGUMENT_SIZE_1_0) || !a->name)
+      return ILAW_PLAIN_REFUSE(ILAW_INVALID_ARGUMENT, m,
+                               "argument %u is null, has no name or a struct_size not from %u to %u", i,
+                               (unsigned)ILAW_ARGUMENT_SIZE_1_0, (unsigned)ILAW_PLAIN_MAX_STRUCT);
     while (p < law->parameter_count && strcmp(law->parameters[p]->name, a->name) != 0) ++p;
-    if (p == law->parameter_count)
-      return ilaw_plain_refuse_argument(own, a->name, -1, "is unknown", message, size);
-    const char* why = ilaw_plain_keep(own, p, a);
-    if (why) return ilaw_plain_refuse_argument(own, a->name, (int)p, why, message, size);
+    if (p == law->parameter_count) {
+      ilaw_plain_add(m, "unknown parameter '%s': expected one of ", a->name);
+      for (uint32_t k = 0; k < p; ++k) ilaw_plain_add(m, "%s%s", k ? ", " : "", law->parameters[k]->name);
+      return ILAW_INVALID_PARAMETER;
+    }
+    const ilaw_result code = ilaw_plain_keep(own, p, a, m);
+    if (code != ILAW_OK) return code;
   }
-  for (uint32_t p = 0; p < law->parameter_count; ++p) {
-    const char* name = law->parameters[p]->name;
-    if (law->parameters[p]->flags & ILAW_FLAG_REQUIRED && !own->given[p])
-      return ilaw_plain_refuse_argument(own, name, (int)p, "is missing", message, size);
-    for (uint32_t a = 0; a < own->table[p].axis_count; ++a)
-      if (own->table[p].field[a] >= 0 && !own->given[own->table[p].field[a]])
-        return ilaw_plain_refuse_argument(own, name, (int)p, "is a table over a field that is not given",
-                                          message, size);
+  for (uint32_t p = 0; p < law->parameter_count; ++p)
+    if (law->parameters[p]->flags & ILAW_FLAG_REQUIRED && !own->given[p]) {
+      ilaw_plain_add(m, "parameter '%s' is missing: ", law->parameters[p]->name);
+      ilaw_plain_add_expected(m, law->parameters[p]);
+      return ILAW_INVALID_PARAMETER;
+    }
+  return ilaw_plain_order(own, m);
+}
+
+/* Whether a number of a setup is exactly one entry of a mask; if not, says so. format: its name with %u. */
+static inline int ilaw_plain_serves(struct ilaw_plain_message* m, const char* format, uint32_t x,
+                                    uint32_t mask) {
+  if ((x & mask) != 0 && (x & (x - 1)) == 0) return 1;
+  ilaw_plain_add(m, format, x);
+  ilaw_plain_add(m, " is not served: expected one of");
+  for (uint32_t bit = 1; bit != 0; bit <<= 1)
+    if (mask & bit) ilaw_plain_add(m, " %u", bit);
+  return 0;
+}
+
+static inline ilaw_result ilaw_plain_check_setup(const ilaw_law* law, const ilaw_setup* s,
+                                                 struct ilaw_plain_message* m) {
+  const ilaw_delassus_forms spins = s->dimension == 3 ? 0 : ILAW_DELASSUS_TRANSVERSE_SPIN;
+  if (s->dimension < 1 || s->dimension > 3 || !(1U << s->dimension & law->dimensions)) {
+    ilaw_plain_add(m, "dimension %u is not served: expected", s->dimension);
+    for (unsigned d = 1; d <= 3; ++d)
+      if (law->dimensions & 1U << d) ilaw_plain_add(m, " %u", d);
+    return ILAW_UNSUPPORTED;
   }
+  if (!ilaw_plain_serves(m, "form %u of H", s->delassus_form, law->delassus_forms & ~spins) ||
+      !ilaw_plain_serves(m, "frame %u", s->frame, law->frames) ||
+      !ilaw_plain_serves(m, "number type %u", s->numbers, law->numbers))
+    return ILAW_UNSUPPORTED;
+  if (s->flags)
+    return ILAW_PLAIN_REFUSE(ILAW_UNSUPPORTED, m, "flags 0x%llx are not known: expected 0",
+                             (unsigned long long)s->flags);
+  if (s->has_tangent > 1)
+    return ILAW_PLAIN_REFUSE(ILAW_INVALID_ARGUMENT, m, "has_tangent %u is unknown: expected 0 or 1",
+                             s->has_tangent);
   return ILAW_OK;
 }
 
-#define ILAW_PLAIN_IS_ONE(x, mask) (((x) & (mask)) != 0 && ((x) & ((x)-1)) == 0)
 static inline ilaw_result ILAW_CALL ilaw_plain_create(const char* id, const ilaw_setup* s,
-                                                      ilaw_instance** instance, char* message, size_t size) {
+                                                      ilaw_instance** instance, char* text, size_t size) {
+  struct ilaw_plain_message m = {text, text ? size : 0, 0};
   const ilaw_plugin* plugin = ilaw_plain_plugin();
   const ilaw_law* law = NULL;
-  if (message && size > 0) message[0] = '\0';
+  if (m.size > 0) text[0] = '\0';
   if (!instance) return ILAW_INVALID_ARGUMENT;
   *instance = NULL;
+  ilaw_plain_add(&m, "law '%s': ", id ? id : "null");
   for (uint32_t k = 0; id && k < plugin->law_count; ++k)
     if (strcmp(plugin->laws[k]->id, id) == 0) law = plugin->laws[k];
   if (!law)
-    return ilaw_plain_refuse(ILAW_INVALID_ARGUMENT, message, size, plugin->name, "has no law of this id");
-  if (!s || s->struct_size < ILAW_SETUP_SIZE_1_0 || (s->argument_count && !s->arguments))
-    return ilaw_plain_refuse(ILAW_INVALID_ARGUMENT, message, size, id, "the setup is null or too small");
-  if (s->flags || s->dimension < 1 || s->dimension > 3 || !(1U << s->dimension & law->dimensions) ||
-      (s->delassus_form == ILAW_DELASSUS_TRANSVERSE_SPIN && s->dimension != 3) ||
-      !ILAW_PLAIN_IS_ONE(s->delassus_form, law->delassus_forms) ||
-      !ILAW_PLAIN_IS_ONE(s->frame, law->frames) || !ILAW_PLAIN_IS_ONE(s->numbers, law->numbers))
-    return ilaw_plain_refuse(ILAW_UNSUPPORTED, message, size, id,
-                             "this dimension, form of H, frame, number type or flag is not served");
-  ilaw_instance* own = (ilaw_instance*)calloc(1, sizeof *own);
-  if (!own) return ilaw_plain_refuse(ILAW_OUT_OF_MEMORY, message, size, id, "out of memory");
-  own->plain = (const ilaw_plain_law*)(const void*)law;
-  own->dimension = s->dimension, own->form = s->delassus_form, own->frame = s->frame;
-  own->numbers = s->numbers;
+    return ILAW_PLAIN_REFUSE(ILAW_INVALID_ARGUMENT, &m, "library '%s' has no law of this id", plugin->name);
+  if (!s || !ilaw_plain_is_sized(s->struct_size, ILAW_SETUP_SIZE_1_0))
+    return ILAW_PLAIN_REFUSE(ILAW_INVALID_ARGUMENT, &m, "setup is null or its struct_size not from %u to %u",
+                             (unsigned)ILAW_SETUP_SIZE_1_0, (unsigned)ILAW_PLAIN_MAX_STRUCT);
   fenv_t host;
   ilaw_plain_enter(&host);
-  const ilaw_result code = ilaw_plain_keep_all(own, s, message, size);
+  ilaw_instance* own = NULL;
+  ilaw_result code = ilaw_plain_check_setup(law, s, &m);
+  if (code == ILAW_OK && !(own = (ilaw_instance*)calloc(1, sizeof *own)))
+    code = ILAW_PLAIN_REFUSE(ILAW_OUT_OF_MEMORY, &m, "out of memory");
+  if (code == ILAW_OK) {
+    own->plain = (const ilaw_plain_law*)(const void*)law;
+    own->dimension = s->dimension, own->form = s->delassus_form, own->frame = s->frame;
+    own->numbers = s->numbers;
+    code = ilaw_plain_keep_all(own, s, &m);
+  }
   fesetenv(&host);
+  if (code == ILAW_OK && m.size > 0) text[0] = '\0';
   if (code == ILAW_OK)
     *instance = own;
   else
@@ -350,7 +505,8 @@ static inline ilaw_inputs ilaw_plain_inputs(const ilaw_instance* own) {
 }
 
 static inline ilaw_result ILAW_CALL ilaw_plain_info(const ilaw_instance* own, ilaw_instance_info* out) {
-  if (!own || !out || out->struct_size < ILAW_INSTANCE_INFO_SIZE_1_0) return ILAW_INVALID_ARGUMENT;
+  if (!own || !out || !ilaw_plain_is_sized(out->struct_size, ILAW_INSTANCE_INFO_SIZE_1_0))
+    return ILAW_INVALID_ARGUMENT;
   const ilaw_law* law = &own->plain->law;
   ilaw_instance_info info;
   memset(&info, 0, sizeof info);
@@ -359,6 +515,7 @@ static inline ilaw_result ILAW_CALL ilaw_plain_info(const ilaw_instance* own, il
   info.state_variables = law->state_variables;
   info.per_node_parameters = own->per_node, info.per_node_parameter_count = own->per_node_count;
   info.capabilities = law->capabilities, info.permissions = law->permissions;
+  info.state_version = own->plain->state_version;
   info.amounts = law->amounts, info.amount_count = law->amount_count;
   memcpy(out, &info, out->struct_size < sizeof info ? out->struct_size : sizeof info);
   return ILAW_OK;
@@ -368,63 +525,88 @@ static inline ilaw_result ILAW_CALL ilaw_plain_info(const ilaw_instance* own, il
 
 static inline ilaw_result ilaw_plain_report(ilaw_report* report, ilaw_result code, int64_t count,
                                             int64_t first, const char* reason, double step) {
-  if (report && report->struct_size >= ILAW_REPORT_SIZE_1_0) {
-    report->bad_count = count, report->first_bad_node = first, report->reason = reason;
-    report->stable_velocity_step = step;
-  }
+  if (!report) return code;
+  report->bad_count = count, report->first_bad_node = first, report->reason = reason;
+  report->stable_velocity_step = step;
   return code;
 }
 
+/* Whether an output has one place for two numbers. */
+static inline int ilaw_plain_collides(const ilaw_output* a, int64_t nodes, uint32_t components) {
+  return (a->values || a->floats) && ((nodes > 1 && components > 0 && a->node_stride == 0) ||
+                                      (components > 1 && a->component_stride == 0));
+}
+
 static inline const char* ilaw_plain_wrong_call(const ilaw_instance* own, const ilaw_batch* b) {
-  if (!own || !b) return "the instance is null, or the batch null or too small";
-  if (b->node_count < 0 || (b->index && b->index64)) return "node_count is negative, or two lists are given";
-  if (b->index_base != 0 && b->index_base != 1) return "index_base is neither 0 nor 1";
+  const uint32_t states = own->plain->law.state_variable_count;
+  if (b->node_count < 0) return "node_count is negative";
   if (!isfinite(b->time)) return "time is not finite";
-  for (int64_t k = 0; k < b->node_count; ++k)
-    if (ilaw_node_of(b, k) < 0) return "an index is below index_base";
-  if (own->plain->law.state_variable_count == 0 || b->node_count == 0) return NULL;
-  if (!b->state_out.values || b->state_out.floats) return "state_out is missing, or not of doubles";
-  return b->node_count > 1 && b->state_out.node_stride == 0 ? "state_out has a node stride of 0" : NULL;
+  if (b->index_base != 0 && b->index_base != 1) return "index_base is neither 0 nor 1";
+  if (b->index && b->index64) return "index and index64 are both given";
+  for (int64_t k = 0; (b->index || b->index64) && k < b->node_count; ++k)
+    if ((b->index ? (int64_t)b->index[k] : b->index64[k]) < b->index_base)
+      return "a node of the index list lies below index_base";
+  if (states == 0 || b->node_count == 0) return NULL;
+  if (ilaw_plain_collides(&b->state_out, b->node_count, states)) return "state_out has a stride of 0";
+  return ilaw_plain_wrong_array(0, b->state_out.values, b->state_out.floats, "state_out is null");
 }
 
 static inline const char* ilaw_plain_wrong_arrays(const ilaw_instance* own, const ilaw_batch* b) {
   const ilaw_law* law = &own->plain->law;
   const ilaw_inputs in = ilaw_plain_inputs(own);
-  const int has_spins = own->form == ILAW_DELASSUS_TRANSVERSE_SPIN;
-  const ilaw_output* outputs[] = {&b->impulse, &b->velocity, &b->energy, &b->moment, &b->spin};
+  const int is_float = own->numbers == ILAW_NUMBERS_FLOAT;
+  const uint32_t d = own->dimension, spins = own->form == ILAW_DELASSUS_TRANSVERSE_SPIN ? 3 : 0;
   const struct {
     const ilaw_input* array;
     int is_read;
-  } inputs[] = {{&b->v_free, 1},
-                {&b->delassus, 1},
-                {&b->gap, (in & ILAW_INPUT_GAP) != 0},
-                {&b->v_previous, (in & ILAW_INPUT_V_PREVIOUS) != 0},
-                {&b->area, (in & ILAW_INPUT_AREA) != 0},
-                {&b->normal, (in & ILAW_INPUT_NORMAL) != 0},
-                {&b->spin_free, has_spins},
-                {&b->spin_previous, has_spins && (in & ILAW_INPUT_V_PREVIOUS)}};
+    const char* missing; /* null: may be absent */
+  } inputs[] = {{&b->v_free, 1, "v_free is null"},
+                {&b->delassus, 1, "delassus is null"},
+                {&b->v_smooth, in & ILAW_INPUT_V_SMOOTH, NULL},
+                {&b->gap, in & ILAW_INPUT_GAP, "gap is null"},
+                {&b->gap_offset, in & ILAW_INPUT_GAP, NULL},
+                {&b->v_previous, in & ILAW_INPUT_V_PREVIOUS, "v_previous is null"},
+                {&b->area, in & ILAW_INPUT_AREA, "area is null"},
+                {&b->normal, in & ILAW_INPUT_NORMAL, "normal is null"},
+                {&b->spin_free, spins != 0, "spin_free is null"},
+                {&b->spin_previous, spins && in & ILAW_INPUT_V_PREVIOUS, "spin_previous is null"}};
+  const struct {
+    const ilaw_output* array;
+    uint32_t components;
+    const char *missing, *stacked;
+  } outputs[] = {{&b->impulse, d, "impulse is null", "impulse has a stride of 0"},
+                 {&b->velocity, d, NULL, "velocity has a stride of 0"},
+                 {&b->energy, ILAW_ENERGY_COUNT, NULL, "energy has a stride of 0"},
+                 {&b->moment, spins, "moment is null", "moment has a stride of 0"},
+                 {&b->spin, spins, NULL, "spin has a stride of 0"}};
   const char* wrong = NULL;
-  if (!(b->velocity_step > 0.0 && b->velocity_step < INFINITY)) return "velocity_step is not finite and > 0";
-  if (!(b->position_step > 0.0 && b->position_step < INFINITY)) return "position_step is not finite and > 0";
+  if (!(b->velocity_step > 0.0 && b->velocity_step < INFINITY))
+    return "velocity_step is not a finite number > 0";
+  if (!(b->position_step > 0.0 && b->position_step < INFINITY))
+    return "position_step is not a finite number > 0";
   if (b->node_count == 0) return NULL;
+  if (b->status && b->node_count > 1 && b->status_stride == 0) return "status_stride is 0";
   for (size_t k = 0; k < sizeof inputs / sizeof *inputs && !wrong; ++k)
     if (inputs[k].is_read)
-      wrong = ilaw_plain_wrong_array(own, inputs[k].array->values, inputs[k].array->floats, 1);
-  if (!wrong && in & ILAW_INPUT_GAP)
-    wrong = ilaw_plain_wrong_array(own, b->gap_offset.values, b->gap_offset.floats, 0);
-  if (!wrong && own->per_node_count && !b->per_node_parameters) wrong = "per_node_parameters is missing";
+      wrong = ilaw_plain_wrong_array(is_float, inputs[k].array->values, inputs[k].array->floats,
+                                     inputs[k].missing);
+  for (size_t k = 0; k < sizeof outputs / sizeof *outputs && !wrong; ++k) {
+    const ilaw_output* a = outputs[k].array;
+    if (outputs[k].components == 0) continue;
+    wrong = ilaw_plain_wrong_array(is_float, a->values, a->floats, outputs[k].missing);
+    if (ilaw_plain_collides(a, b->node_count, outputs[k].components)) wrong = outputs[k].stacked;
+  }
+  if (own->per_node_count && !b->per_node_parameters) return "per_node_parameters is null";
   for (uint32_t k = 0; k < own->per_node_count && !wrong; ++k)
     wrong =
-        ilaw_plain_wrong_array(own, b->per_node_parameters[k].values, b->per_node_parameters[k].floats, 1);
-  const uint32_t fixed = has_spins ? 5 : 3;
-  for (uint32_t k = 0; k < fixed + (b->amounts ? law->amount_count : 0) && !wrong; ++k) {
-    const ilaw_output* a = k < fixed ? outputs[k] : &b->amounts[k - fixed];
-    wrong = ilaw_plain_wrong_array(own, a->values, a->floats, a == &b->impulse || a == &b->moment);
-    if ((a->values || a->floats) && a->node_stride == 0 && b->node_count > 1)
-      wrong = "an output has a node stride of 0";
+        ilaw_plain_wrong_array(is_float, b->per_node_parameters[k].values, b->per_node_parameters[k].floats,
+                               "values of a per-node parameter are null");
+  for (uint32_t k = 0; b->amounts && k < law->amount_count && !wrong; ++k) {
+    wrong = ilaw_plain_wrong_array(is_float, b->amounts[k].values, b->amounts[k].floats, NULL);
+    if (ilaw_plain_collides(&b->amounts[k], b->node_count, 1)) wrong = "an amount has a stride of 0";
   }
-  if (wrong || !law->state_variable_count) return wrong;
-  return b->state_in.values && !b->state_in.floats ? NULL : "state_in is missing, or not of doubles";
+  if (wrong || law->state_variable_count == 0) return wrong;
+  return ilaw_plain_wrong_array(0, b->state_in.values, b->state_in.floats, "state_in is null");
 }
 
 /* False where a number is not finite. */
@@ -444,12 +626,12 @@ static inline const char* ilaw_plain_read_spins(const ilaw_instance* own, const 
   node->j_N = ilaw_get(&b->delassus, i, 3), node->j_T = ilaw_get(&b->delassus, i, 4);
   if (!(node->j_N > 0.0 && node->j_N < INFINITY && node->j_T > 0.0 && node->j_T < INFINITY) ||
       !(node->k / node->h_T * (node->k / node->j_T) < 1.0 - 1e-12))
-    return "H is not positive definite";
-  if (!ilaw_plain_vector(&b->spin_free, i, 3, node->spin_free)) return "spin_free is not finite";
-  if (ilaw_plain_inputs(own) & ILAW_INPUT_V_PREVIOUS &&
-      !ilaw_plain_vector(&b->spin_previous, i, 3, node->spin_previous))
-    return "spin_previous is not finite";
-  return NULL;
+    return "H is not finite and positive definite";
+  if (ilaw_plain_vector(&b->spin_free, i, 3, node->spin_free) &&
+      (!(ilaw_plain_inputs(own) & ILAW_INPUT_V_PREVIOUS) ||
+       ilaw_plain_vector(&b->spin_previous, i, 3, node->spin_previous)))
+    return NULL;
+  return "spin_free or spin_previous is not finite";
 }
 
 /* Null, or why the input of the node is bad. */
@@ -461,10 +643,14 @@ static inline const char* ilaw_plain_read(const ilaw_instance* own, const ilaw_b
   node->instance = own, node->time = b->time, node->n[0] = 1.0;
   node->velocity_step = b->velocity_step, node->position_step = b->position_step;
   if (!ilaw_plain_vector(&b->v_free, i, own->dimension, node->v_free)) return "v_free is not finite";
+  memcpy(node->v_smooth, node->v_free, sizeof node->v_smooth);
+  if (in & ILAW_INPUT_V_SMOOTH && (b->v_smooth.values || b->v_smooth.floats) &&
+      !ilaw_plain_vector(&b->v_smooth, i, own->dimension, node->v_smooth))
+    return "v_smooth is not finite";
   node->h_N = node->h_T = ilaw_get(&b->delassus, i, 0);
   if (own->form != ILAW_DELASSUS_SCALAR && own->dimension > 1) node->h_T = ilaw_get(&b->delassus, i, 1);
   if (!(node->h_N > 0.0 && node->h_N < INFINITY && node->h_T > 0.0 && node->h_T < INFINITY))
-    return "H is not positive definite";
+    return "H is not finite and positive definite";
   if (own->form == ILAW_DELASSUS_TRANSVERSE_SPIN) {
     const char* wrong = ilaw_plain_read_spins(own, b, i, node);
     if (wrong) return wrong;
@@ -474,27 +660,28 @@ static inline const char* ilaw_plain_read(const ilaw_instance* own, const ilaw_b
     node->gap = ilaw_get(&b->gap, i, 0);
     if (has_offset) node->gap -= ilaw_get(&b->gap_offset, i, 0);
   }
-  if (!isfinite(node->gap)) return "gap or gap_offset is not finite";
+  if (!isfinite(node->gap)) return "the gap is not finite";
   if (in & ILAW_INPUT_V_PREVIOUS && !ilaw_plain_vector(&b->v_previous, i, own->dimension, node->v_previous))
     return "v_previous is not finite";
   if (in & ILAW_INPUT_AREA) node->area = ilaw_get(&b->area, i, 0);
-  if (!(node->area >= 0.0 && node->area < INFINITY)) return "area is not finite and >= 0";
+  if (!(node->area >= 0.0 && node->area < INFINITY)) return "the area is not a finite number >= 0";
   if (in & ILAW_INPUT_NORMAL) {
     ilaw_plain_vector(&b->normal, i, own->dimension, node->n);
-    if (!(fabs(ilaw_dot(node->n, node->n) - 1.0) <= 1e-6)) return "normal is not a unit vector";
+    if (!(fabs(ilaw_dot(node->n, node->n) - 1.0) <= 1e-6)) return "the normal is not a unit vector";
   }
   for (uint32_t s = 0; s < law->state_variable_count; ++s)
-    if (!isfinite(node->state[s] = ilaw_get(&b->state_in, i, s))) return "a state is not finite";
-  for (uint32_t p = 0; p < law->parameter_count; ++p) {
-    static const double none[3] = {0.0, 0.0, 0.0};
-    node->value[p] = own->number[p];
-    if (own->kind[p] == ILAW_KIND_VALUE_PER_NODE) {
+    if (!isfinite(node->state[s] = ilaw_get(&b->state_in, i, s))) return "the state is not finite";
+  for (int rank = 0; rank <= 2; ++rank)
+    for (uint32_t p = 0; p < law->parameter_count; ++p) {
+      static const double none[3] = {0.0, 0.0, 0.0};
+      if (own->rank[p] != rank) continue;
+      node->value[p] = own->number[p];
+      if (own->kind[p] == ILAW_KIND_VALUE_TABLE) node->value[p] = ilaw_value(node, p, none);
+      if (own->kind[p] != ILAW_KIND_VALUE_PER_NODE) continue;
       node->value[p] = ilaw_get(&b->per_node_parameters[own->slot[p]], i, 0);
       if (!ilaw_plain_is_allowed(law->parameters[p], node->value[p]))
-        return "a value per node is out of range";
+        return "a per-node parameter is out of range";
     }
-    if (own->kind[p] == ILAW_KIND_VALUE_TABLE) node->value[p] = ilaw_value(node, p, none);
-  }
   return NULL;
 }
 
@@ -544,17 +731,41 @@ static inline void ilaw_plain_write(const ilaw_instance* own, const ilaw_batch* 
   if (b->status) b->status[i * b->status_stride] = result->status;
 }
 
-/* A copy of the batch of a host of any minor version; members that it lacks are zero. */
-static inline const ilaw_batch* ilaw_plain_sized(const ilaw_batch* given, ilaw_batch* own) {
-  if (!given || given->struct_size < ILAW_BATCH_SIZE_1_0) return NULL;
-  memset(own, 0, sizeof *own);
-  memcpy(own, given, given->struct_size < sizeof *own ? given->struct_size : sizeof *own);
-  return own;
+/* As ilaw.h defines it, each operation rounded. */
+static inline int ilaw_plain_is_out_of_reach(const ilaw_node* node) {
+  const double reach = node->gap + node->position_step * ilaw_dot(node->n, node->v_free);
+  const double smooth = node->gap + node->position_step * ilaw_dot(node->n, node->v_smooth);
+  return node->gap > 0.0 && reach > 0.0 && smooth > 0.0;
 }
 
-static inline int ilaw_plain_overflows(const ilaw_instance* own, const double* r) {
-  const double limit = own->numbers == ILAW_NUMBERS_FLOAT ? 0x1p126 : INFINITY;
-  return !(fabs(r[0]) < limit && fabs(r[1]) < limit && fabs(r[2]) < limit);
+/* Null, or what no law may give. */
+static inline const char* ilaw_plain_wrong_result(const ilaw_instance* own, const ilaw_node* node,
+                                                  const ilaw_node_result* result) {
+  const ilaw_law* law = &own->plain->law;
+  const double *r = result->r, *m = result->m, *energy = result->energy;
+  const double size = (fabs(r[0]) + fabs(r[1]) + fabs(r[2])) + (fabs(m[0]) + fabs(m[1]) + fabs(m[2]));
+  /* An impulse of 2^126 or more overflows in a host that computes in floats. */
+  const double guard = own->numbers == ILAW_NUMBERS_FLOAT ? 0x1p898 : 4.0;
+  if (isnan(size)) return "the law gave an impulse that is not a number";
+  int is_finite = isfinite(guard * size) != 0, is_fresh = 1;
+  for (uint32_t s = 0; s < law->state_variable_count; ++s) {
+    is_finite = is_finite && isfinite(result->state[s]);
+    is_fresh = is_fresh && node->state[s] == 0.0;
+  }
+  if (!is_finite) return "the impulse or the state overflows";
+  for (int e = 0; e < ILAW_ENERGY_COUNT; ++e)
+    if (isnan(energy[e]) || (e != ILAW_ENERGY_STORED && energy[e] < 0.0))
+      return "the law gave a dissipated energy below 0, or one that is not a number";
+  for (uint32_t a = 0; a < law->amount_count; ++a)
+    if (isnan(result->amounts[a])) return "the law gave an amount that is not a number";
+  if (result->status >= ILAW_BAD_INPUT) return "the law gave a status that no step has";
+  if (!(result->stable_velocity_step >= 0.0)) return "the law gave a stable step that is not a number >= 0";
+  /* Normals are unit vectors to 1e-6. */
+  if (!(law->capabilities & ILAW_CAN_ADHERE) && ilaw_dot(r, node->n) < -1e-6 * size)
+    return "the law pulled, which needs ILAW_CAN_ADHERE among its capabilities";
+  if (law->permissions & ILAW_MAY_SKIP_FRESH && is_fresh && size > 0.0 && ilaw_plain_is_out_of_reach(node))
+    return "the law acted out of reach, which ILAW_MAY_SKIP_FRESH of its permissions excludes";
+  return NULL;
 }
 
 static inline ilaw_result ilaw_plain_walk(const ilaw_instance* own, const ilaw_batch* b,
@@ -562,12 +773,8 @@ static inline ilaw_result ilaw_plain_walk(const ilaw_instance* own, const ilaw_b
   const char *refused = ilaw_plain_wrong_call(own, b), *reason = NULL;
   int64_t count = 0, first = -1;
   double stable = INFINITY;
-  if (!refused && b->flags)
-    return ilaw_plain_report(report, ILAW_UNSUPPORTED, 0, -1, "a flag is not known", 0.0);
   if (!refused) refused = ilaw_plain_wrong_arrays(own, b);
-  if (!refused && b->node_count > 1 && b->status && b->status_stride == 0)
-    refused = "status has a stride of 0";
-  if (refused) return ilaw_plain_report(report, ILAW_INVALID_ARGUMENT, 0, -1, refused, 0.0);
+  if (refused) return ilaw_plain_report(report, ILAW_INVALID_ARGUMENT, 0, -1, refused, INFINITY);
   for (int64_t k = 0; k < b->node_count; ++k) {
     const int64_t i = ilaw_node_of(b, k);
     ilaw_node node;
@@ -577,8 +784,7 @@ static inline ilaw_result ilaw_plain_walk(const ilaw_instance* own, const ilaw_b
     memcpy(result.state, node.state, sizeof result.state);
     result.stable_velocity_step = INFINITY;
     if (!bad) bad = own->plain->step(&node, &result);
-    if (!bad && (ilaw_plain_overflows(own, result.r) || ilaw_plain_overflows(own, result.m)))
-      bad = "the impulse or moment overflows";
+    if (!bad) bad = ilaw_plain_wrong_result(own, &node, &result);
     if (bad) ilaw_plain_spoil(own, b, i, &node, &result);
     if (bad && count++ == 0) first = i, reason = bad;
     ilaw_plain_write(own, b, i, &node, &result);
@@ -590,8 +796,7 @@ static inline ilaw_result ilaw_plain_walk(const ilaw_instance* own, const ilaw_b
 static inline ilaw_result ilaw_plain_first_states(const ilaw_instance* own, const ilaw_batch* b,
                                                   ilaw_report* report) {
   const char* refused = ilaw_plain_wrong_call(own, b);
-  if (refused) return ilaw_plain_report(report, ILAW_INVALID_ARGUMENT, 0, -1, refused, 0.0);
-  if (b->flags) return ilaw_plain_report(report, ILAW_UNSUPPORTED, 0, -1, "a flag is not known", 0.0);
+  if (refused) return ilaw_plain_report(report, ILAW_INVALID_ARGUMENT, 0, -1, refused, INFINITY);
   for (int64_t k = 0; k < b->node_count; ++k)
     for (uint32_t s = 0; s < own->plain->law.state_variable_count; ++s)
       ilaw_put(&b->state_out, ilaw_node_of(b, k), s, 0.0);
@@ -600,13 +805,23 @@ static inline ilaw_result ilaw_plain_first_states(const ilaw_instance* own, cons
 
 typedef ilaw_result (*ilaw_plain_batch_function)(const ilaw_instance* own, const ilaw_batch* b,
                                                  ilaw_report* report);
-/* A batch of any size, in the environment of laws. */
+/* A batch of any size, whose members that the host lacks are zero, in the environment of laws. */
 static inline ilaw_result ilaw_plain_call(ilaw_plain_batch_function function, const ilaw_instance* own,
                                           const ilaw_batch* given, ilaw_report* report) {
-  ilaw_batch copy;
+  ilaw_batch b;
   fenv_t host;
+  if (report && !ilaw_plain_is_sized(report->struct_size, ILAW_REPORT_SIZE_1_0)) return ILAW_INVALID_ARGUMENT;
+  if (!own || !given)
+    return ilaw_plain_report(report, ILAW_INVALID_ARGUMENT, 0, -1, "instance or batch is null", INFINITY);
+  if (!ilaw_plain_is_sized(given->struct_size, ILAW_BATCH_SIZE_1_0))
+    return ilaw_plain_report(report, ILAW_INVALID_ARGUMENT, 0, -1,
+                             "struct_size of the batch is none of any version", INFINITY);
+  memset(&b, 0, sizeof b);
+  memcpy(&b, given, given->struct_size < sizeof b ? given->struct_size : sizeof b);
+  if (b.flags)
+    return ilaw_plain_report(report, ILAW_UNSUPPORTED, 0, -1, "flags of the batch are not known", INFINITY);
   ilaw_plain_enter(&host);
-  const ilaw_result code = function(own, ilaw_plain_sized(given, &copy), report);
+  const ilaw_result code = function(own, &b, report);
   fesetenv(&host);
   return code;
 }
@@ -641,9 +856,14 @@ static inline ilaw_result ILAW_CALL ilaw_plain_initialise(const ilaw_instance* o
   }
 
 /* `.parameters = list` and its count, for a list of that name; one that is too long does not compile. */
-#define ILAW_PLAIN_LIST(list) .list = list, .ILAW_PLAIN_COUNT_##list = ILAW_PLAIN_LENGTH(list)
-#define ILAW_PLAIN_LENGTH(list) \
-  (sizeof list / sizeof *list * sizeof(char[sizeof list / sizeof *list <= ILAW_PLAIN_MAX ? 1 : -1]))
+#define ILAW_PLAIN_LIST(list) \
+  .list = list, .ILAW_PLAIN_COUNT_##list = ILAW_PLAIN_LENGTH(list, ILAW_PLAIN_MOST_##list)
+#define ILAW_PLAIN_LENGTH(list, most) \
+  (sizeof list / sizeof *list * sizeof(char[sizeof list / sizeof *list <= (most) ? 1 : -1]))
+#define ILAW_PLAIN_MOST_parameters ILAW_PLAIN_MAX
+#define ILAW_PLAIN_MOST_state_variables ILAW_PLAIN_MAX
+#define ILAW_PLAIN_MOST_amounts ILAW_PLAIN_MAX
+#define ILAW_PLAIN_MOST_references UINT32_MAX
 #define ILAW_PLAIN_COUNT_parameters parameter_count
 #define ILAW_PLAIN_COUNT_state_variables state_variable_count
 #define ILAW_PLAIN_COUNT_amounts amount_count

@@ -144,9 +144,9 @@ TEST(ViscousLaw, InPlainCGivesTheSame) {
   };
   EXPECT_THAT(refusal(SetupBuilder({})), HasSubstr("parameter 'viscosity' is missing"));
   EXPECT_THAT(refusal(SetupBuilder({{{"viscosity", -1.0}}, {}})),
-              HasSubstr("found -1, expected 0 to 1e+300"));
+              HasSubstr("'viscosity' = -1 is not allowed: expected a number in [0, 1e+300]"));
   EXPECT_THAT(refusal(SetupBuilder({{{"viscosity", 1.0}}, {}}, 3, ILAW_DELASSUS_FULL)),
-              HasSubstr("form of H"));
+              HasSubstr("form 4 of H"));
 }
 
 TEST(ViscousLaw, InPlainCKeepsEveryRule) {

@@ -33,12 +33,13 @@ static const char* step(const ilaw_node* node, ilaw_node_result* result) {
   return NULL;
 }
 
-static const ilaw_plain_law law = {{ILAW_PLAIN_LAW, .id = "viscous", .title = "Viscous layer",
-                                    .doc = "A force -c A v where the gap is closed, solved implicitly.",
-                                    .dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3,
-                                    .inputs = ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_AREA,
-                                    .capabilities = ILAW_CAN_ADHERE, /* it holds back a node that leaves */
-                                    .permissions = ILAW_MAY_SKIP_FRESH | ILAW_MAY_SKIP_FREE,
-                                    ILAW_PLAIN_LIST(parameters), ILAW_PLAIN_LIST(references)},
-                                   step};
+static const ilaw_plain_law law = {
+    .law = {ILAW_PLAIN_LAW, .id = "viscous", .title = "Viscous layer",
+            .doc = "A force -c A v where the gap is closed, solved implicitly.",
+            .dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3,
+            .inputs = ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_AREA,
+            .capabilities = ILAW_CAN_ADHERE, /* it holds back a node that leaves */
+            .permissions = ILAW_MAY_SKIP_FRESH | ILAW_MAY_SKIP_FREE, ILAW_PLAIN_LIST(parameters),
+            ILAW_PLAIN_LIST(references)},
+    .step = step};
 ILAW_PLAIN_LIBRARY("viscous", "1.0.0", "me", "BSD-3-Clause", &law.law)

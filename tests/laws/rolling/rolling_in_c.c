@@ -62,10 +62,11 @@ static const char* step(const ilaw_node* node, ilaw_node_result* result) {
 }
 
 static const ilaw_plain_law law = {
-    {ILAW_PLAIN_LAW_OF(ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE | ILAW_DELASSUS_TRANSVERSE_SPIN),
-     .id = "rolling_in_c", .title = "Friction, rolling and twisting", .doc = "",
-     .dimensions = ILAW_DIMENSION_3, .inputs = ILAW_INPUT_GAP | ILAW_INPUT_NORMAL,
-     ILAW_PLAIN_LIST(parameters)},
-    step};
+    .law = {ILAW_PLAIN_LAW_OF(ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE |
+                              ILAW_DELASSUS_TRANSVERSE_SPIN),
+            .id = "rolling_in_c", .title = "Friction, rolling and twisting", .doc = "",
+            .dimensions = ILAW_DIMENSION_3, .inputs = ILAW_INPUT_GAP | ILAW_INPUT_NORMAL,
+            ILAW_PLAIN_LIST(parameters)},
+    .step = step};
 
 ILAW_PLAIN_LIBRARY("rolling_in_c", "1.0.0", "tests", "BSD-3-Clause", &law.law)

@@ -164,8 +164,9 @@ TEST(template_c, RefusesATableOverAFieldThatIsNotGiven) {
     Brake().law();
     FAIL() << "accepted";
   } catch (const ilaw::error& error) {
-    EXPECT_THAT(std::string(error.what()),
-                HasSubstr("parameter 'friction' is a table over a field that is not given"))
+    EXPECT_THAT(
+        std::string(error.what()),
+        HasSubstr("parameter 'friction' is a table over 'temperature': expected a value, a value per node"))
         << error.what();
   }
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ilaw/decimal_text.hpp>
 #include <ilaw/kit/law.hpp>
 #include <ilaw/sized.hpp>
 
@@ -52,27 +53,20 @@ inline bool in_range(const ilaw_parameter& p, double value) {
       .has(value);
 }
 
+inline void add_number(message& text, double value) { text.add("%s", decimal_text(value).get()); }
+
 inline void add_range(message& text, const ilaw_parameter& p) {
-  text.add("%s%g, ", p.flags & ILAW_FLAG_EXCLUDES_MINIMUM ? "(" : "[", p.minimum);
+  text.add("%s%s, ", p.flags & ILAW_FLAG_EXCLUDES_MINIMUM ? "(" : "[", decimal_text(p.minimum).get());
   if (p.flags & ILAW_FLAG_ALLOWS_INFINITY)
     text.add("inf]");
   else if (p.maximum == std::numeric_limits<double>::max())
     text.add("inf)");
   else
-    text.add("%g]", p.maximum);
+    text.add("%s]", decimal_text(p.maximum).get());
 }
 
 inline void add_choices(message& text, const ilaw_parameter& p) {
   for (std::uint32_t i = 0; i < p.choice_count; ++i) text.add("%s\"%s\"", i ? ", " : "", p.choices[i]);
-}
-
-// With as few digits as read back to the same number.
-inline void add_number(message& text, double value) {
-  char digits[32];
-  int precision = 15;
-  do std::snprintf(digits, sizeof digits, "%.*g", precision, value);
-  while (precision++ < 17 && std::strtod(digits, nullptr) != value);
-  text.add("%s", digits);
 }
 
 inline void add_value(message& text, const ilaw_parameter& p, double value) {
