@@ -145,6 +145,7 @@ __attribute__((constructor)) static void begin(void) {
   if (breaks("extension-unknown: library")) plugin.extension = library_extension;
   if (breaks("info-within: before")) law.inputs &= ~(uint32_t)ILAW_INPUT_V_PREVIOUS;
   if (breaks("frame-turned")) law.frames = ILAW_FRAME_GLOBAL;
+  disturb("loading-process");
   if (breaks("energy-made")) law.outputs &= ~(uint32_t)ILAW_OUTPUT_ENERGY;
 }
 __attribute__((destructor)) static void end(void) { free(block); }
@@ -152,6 +153,7 @@ __attribute__((destructor)) static void end(void) { free(block); }
 ILAW_EXPORT const ilaw_plugin* ILAW_CALL ILAW_ENTRY(void) {
   static int calls;
   const int again = calls++ % 2;
+  disturb("loading-process: entry");
   if (breaks("description-constant: text")) law.doc = again ? "Keeps some rules." : "Keeps every rule.";
   if (breaks("description-constant: law")) law.id = again ? "example" : "sample";
   return breaks("description-constant") && again ? &other_plugin : &plugin;

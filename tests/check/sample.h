@@ -56,6 +56,9 @@ typedef struct shared_memory {
 shared_memory* shared(void);
 int on_first_thread(void);
 
+/* Changes what a rule on the process forbids; the name goes on with the thing after a colon. */
+void disturb(const char* rule);
+
 void throw_something(void);
 const ilaw_law* sample_law(void);
 const ilaw_parameter* parameter_named(const char* name);

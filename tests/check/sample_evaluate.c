@@ -120,6 +120,7 @@ ilaw_result ILAW_CALL sample_initialise(const ilaw_instance* made, const ilaw_ba
   const ilaw_result code = check_call(made, b, report, 0);
   int64_t k;
   if (code != ILAW_OK) return code;
+  disturb("calls-process: initialise");
   for (k = 0; k < b->node_count; ++k) {
     const int64_t node = node_of(b, k);
     double first = 0.0;
@@ -243,5 +244,6 @@ ilaw_result ILAW_CALL sample_evaluate(const ilaw_instance* made, const ilaw_batc
     b->impulse.values[node_of(b, 0) * b->impulse.node_stride + 1] = 1.0;
   fesetenv(&host);
   if (breaks("float-flags")) feraiseexcept(FE_INEXACT);
+  disturb("calls-process: evaluate");
   return code;
 }
