@@ -67,6 +67,13 @@ double draw_gap(double step, Draw& draw) {
   return draw.one_in(8) ? draw.within(5.0, 2000.0) * step : draw.within(-2.0, 2.0) * step;
 }
 
+// In which steps a law that asks for it is given v_smooth.
+enum class Smooth { in_none, in_all, in_every_second };
+Smooth draw_smooth_steps(const Trial& trial, Draw& draw) {
+  if (!trial.reads(ILAW_INPUT_V_SMOOTH)) return Smooth::in_none;
+  return std::array{Smooth::in_none, Smooth::in_all, Smooth::in_every_second}[draw.below(3)];
+}
+
 Inputs empty_inputs(const Trial& trial, std::size_t count) {
   Inputs in;
   in.count = count;
@@ -169,6 +176,19 @@ void draw_motion(Inputs& in, bool isotropic, bool without_force, bool is_path, D
 
 }  // namespace
 
+void draw_smooth(Inputs& in, Draw& draw) {
+  in.v_smooth = in.v_free;
+  for (std::size_t i = 0; i < in.count; ++i) {
+    if (draw.one_in(4)) continue;
+    Vector v = in.vector(in.v_previous, i);
+    if (!draw.one_in(4)) {
+      const Vector n = in.normal_at(i);
+      for (std::size_t c = 0; c < in.dimension; ++c) v[c] = draw.within(-1.0, 1.0) - 0.2 * n[c];
+    }
+    in.set_vector(in.v_smooth, i, v);
+  }
+}
+
 Values constants_of(const Trial& trial, const Inputs& in, std::size_t node) {
   Values values = trial.values;
   for (std::uint32_t k = 0; k < trial.info.per_node_parameter_count; ++k)
@@ -241,14 +261,17 @@ double Inputs::slack(std::size_t node) const {
 
 bool Inputs::is_out_of_reach(std::size_t node) const {
   const double g = slack(node);
-  const Vector v = vector(v_free, node), n = normal_at(node);
-  const double along = normal.empty() ? v[0] : (n[0] * v[0] + n[1] * v[1]) + n[2] * v[2];
-  return g > 0.0 && g + position_step * along > 0.0;
+  const Vector n = normal_at(node);
+  const auto stays_open = [&](const Vector& v) {
+    const double along = normal.empty() ? v[0] : (n[0] * v[0] + n[1] * v[1]) + n[2] * v[2];
+    return g > 0.0 && g + position_step * along > 0.0;
+  };
+  return stays_open(vector(v_free, node)) && (v_smooth.empty() || stays_open(vector(v_smooth, node)));
 }
 
 void Inputs::round_to(const Setup& setup) {
-  for (std::vector<double>* values : {&v_free, &delassus, &gap, &gap_offset, &v_previous, &area, &normal,
-                                      &tangent, &spin_free, &spin_previous})
+  for (std::vector<double>* values : {&v_free, &v_smooth, &delassus, &gap, &gap_offset, &v_previous, &area,
+                                      &normal, &tangent, &spin_free, &spin_previous})
     for (double& value : *values) value = setup.rounded(value);
 }
 
@@ -261,6 +284,7 @@ std::vector<NamedArray> Inputs::arrays_of(std::size_t node) const {
     arrays.push_back({name, {first, first + static_cast<std::ptrdiff_t>(width)}});
   };
   add("v_free", v_free, dimension);
+  add("v_smooth", v_smooth, dimension);
   add("delassus", delassus, form_width);
   add("gap", gap, 1);
   add("gap_offset", gap_offset, 1);
@@ -315,12 +339,15 @@ Script draw_script(const Trial& trial, Draw& draw, const ScriptSize& size, bool 
   draw_fixed(in, trial, draw);
   const bool same_steps = draw.one_in(2), without_force = draw.one_in(2), alike = isotropic || draw.one_in(4),
              is_path = !draw.one_in(3);
+  const Smooth smooth = draw_smooth_steps(trial, draw);
   for (std::size_t k = 0; k < size.steps; ++k) {
     in.velocity_step = 0x1p-10 * (same_steps ? 1.0 : draw.within(0.5, 1.5));
     in.position_step = 0x1p-10 * (same_steps ? 1.0 : draw.within(0.5, 1.5));
     in.time += in.velocity_step;
     if (k > 0 && is_path) turn_axes(in, draw);
     draw_motion(in, alike, without_force, k > 0 && is_path, draw);
+    in.v_smooth.clear();
+    if (smooth == Smooth::in_all || (smooth == Smooth::in_every_second && k % 2 == 1)) draw_smooth(in, draw);
     in.round_to(trial.setup);
     script.push_back(in);
   }
@@ -339,8 +366,8 @@ Inputs turned(Inputs in, const std::vector<Matrix>& axes) {
   in.tangent.resize(in.count * in.dimension);
   for (std::size_t i = 0; i < in.count; ++i) {
     const Matrix to_host = transposed(axes[i]);
-    for (std::vector<double> Inputs::*of :
-         {&Inputs::v_free, &Inputs::v_previous, &Inputs::spin_free, &Inputs::spin_previous})
+    for (std::vector<double> Inputs::*of : {&Inputs::v_free, &Inputs::v_smooth, &Inputs::v_previous,
+                                            &Inputs::spin_free, &Inputs::spin_previous})
       if (!(in.*of).empty()) in.set_vector(in.*of, i, times(to_host, in.vector(in.*of, i)));
     in.set_vector(in.normal, i, axes[i][0]);
     in.set_vector(in.tangent, i, axes[i][1]);
@@ -369,8 +396,9 @@ Inputs in_form(Inputs in, const Setup& setup) {
 Inputs turned_as_a_whole(Inputs in, const Matrix& rotation) {
   const Matrix back = transposed(rotation);
   for (std::size_t i = 0; i < in.count; ++i) {
-    for (std::vector<double> Inputs::*of : {&Inputs::v_free, &Inputs::v_previous, &Inputs::normal,
-                                            &Inputs::tangent, &Inputs::spin_free, &Inputs::spin_previous})
+    for (std::vector<double> Inputs::*of :
+         {&Inputs::v_free, &Inputs::v_smooth, &Inputs::v_previous, &Inputs::normal, &Inputs::tangent,
+          &Inputs::spin_free, &Inputs::spin_previous})
       if (!(in.*of).empty()) in.set_vector(in.*of, i, times(rotation, in.vector(in.*of, i)));
     if (in.form == ILAW_DELASSUS_FULL) set_full(in, i, from_axes(in.h(i), back));
   }

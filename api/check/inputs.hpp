@@ -28,13 +28,13 @@ struct Motion {
 };
 
 // Values of each node in turn: d components of a vector, as many of H as its form has, one of the others.
-// Spins are empty where the form of H has none.
+// Spins are empty if the form of H has none, v_smooth if this step is not given it.
 struct Inputs {
   std::size_t count = 0, dimension = 3, form_width = 1;
   std::uint32_t form = ILAW_DELASSUS_SCALAR;
   double time = 0.0, velocity_step = 0.0, position_step = 0.0;
-  std::vector<double> v_free, delassus, gap, gap_offset, v_previous, area, normal, tangent, spin_free,
-      spin_previous;
+  std::vector<double> v_free, v_smooth, delassus, gap, gap_offset, v_previous, area, normal, tangent,
+      spin_free, spin_previous;
   std::vector<std::vector<double>> per_node;
 
   Vector vector(const std::vector<double>& of, std::size_t node) const;
@@ -47,7 +47,7 @@ struct Inputs {
   // H r + k n x m, and J m - k n x r.
   Motion gained(std::size_t node, const Vector& r, const Vector& m) const;
   Vector normal_at(std::size_t node) const;
-  // g of "out of reach", and whether the node is (ilaw.h).
+  // g of "out of reach", and whether the node is, by v_free and by v_smooth if given (ilaw.h).
   double slack(std::size_t node) const;
   bool is_out_of_reach(std::size_t node) const;
   std::vector<NamedArray> arrays_of(std::size_t node) const;
@@ -61,9 +61,14 @@ struct ScriptSize {
   std::size_t nodes = 13, steps = 5;
 };
 // Random nodes with motions and gaps of one size, most of them near contact. In every second script
-// velocities stay or turn back, and normals of the host turn. H is a multiple of the identity where
+// velocities stay or turn back, and normals of the host turn. A law that asks for v_smooth is given it in no,
+// every or every second step. H is a multiple of the identity where
 // "isotropic" says so, or the law can be given no other. Parameters per node differ from node to node.
 Script draw_script(const Trial& trial, Draw& draw, const ScriptSize& size = {}, bool isotropic = false);
+
+// Any v_smooth that impulses of other contacts can make: v_free, the velocity before the step, or another
+// one.
+void draw_smooth(Inputs& in, Draw& draw);
 
 // The parameters of the trial with those of one node as constants.
 Values constants_of(const Trial& trial, const Inputs& in, std::size_t node);

@@ -27,6 +27,7 @@ struct Layout {
   std::int32_t index_base = 0;
   std::size_t spare = 0;  // nodes of the arrays that are on no list
   bool in_place = false;  // state_out is state_in
+  bool unasked = true;    // v_smooth is there for a law that does not ask for it
   std::uint32_t outputs = all_outputs;
   std::optional<std::size_t> no_amount{};  // this one is not asked for
   std::vector<std::size_t> nodes{};        // of the script, in their order; empty: all
@@ -46,12 +47,13 @@ struct Results {
   Vector vector(const std::vector<double>& of, std::size_t node, std::size_t dimension) const;
 };
 
-// An array of nodes with some components each, of doubles or floats, between sentinels.
+// An array of nodes with some components each, of doubles or floats, between sentinels. spread: added to the
+// node stride of Order::spread, so that arrays of one batch have different ones.
 class Field {
  public:
   Field() = default;
   Field(Memory& memory, const char* name, std::size_t components, std::size_t room, Order order, Use use,
-        ilaw_number_type numbers);
+        ilaw_number_type numbers, std::size_t spread = 0);
 
   bool given() const { return values_ || floats_; }
   double get(std::size_t node, std::size_t component) const { return number(place(node, component)); }
@@ -100,6 +102,7 @@ class Arrays {
   void load(const Inputs& in);
 
  private:
+  Field made(const char* name, std::size_t width, Use use, ilaw_number_type numbers);
   void make_list(Memory& memory);
   void make_inputs(const Inputs& first, Memory& memory);
   void make_outputs(Memory& memory);
@@ -112,11 +115,11 @@ class Arrays {
   const Trial& trial_;
   Layout layout_;
   Memory& memory_;
-  std::size_t room_;
+  std::size_t room_, made_ = 0;
   std::vector<std::size_t> places_;  // in the arrays, of each node of the batch
   ilaw_batch batch_{};
   ilaw_report report_{};
-  Field v_free_, delassus_, gap_, gap_offset_, v_previous_, area_, normal_, tangent_, spin_free_,
+  Field v_free_, v_smooth_, delassus_, gap_, gap_offset_, v_previous_, area_, normal_, tangent_, spin_free_,
       spin_previous_;
   Field state_in_, state_out_, impulse_, velocity_, energy_, moment_, spin_;
   std::vector<Field> per_node_, amounts_;

@@ -233,7 +233,8 @@ ilaw_result ILAW_CALL sample_info(const ilaw_instance* made, ilaw_instance_info*
   full.inputs = ILAW_INPUT_GAP | ILAW_INPUT_AREA;
   if (made->setup.frame == ILAW_FRAME_GLOBAL && !breaks("info-frame")) full.inputs |= ILAW_INPUT_NORMAL;
   if (made->setup.has_tangent && made->setup.dimension == 3) full.inputs |= ILAW_INPUT_TANGENT;
-  if (breaks("info-within: inputs")) full.inputs |= 1U << 5;
+  if (made->rough) full.inputs |= ILAW_INPUT_V_SMOOTH;
+  if (breaks("info-within: inputs")) full.inputs |= 1U << 6;
   if (breaks("info-within: before")) full.inputs |= ILAW_INPUT_V_PREVIOUS;
   if (breaks("info-frame: local")) full.inputs |= ILAW_INPUT_NORMAL;
   if (breaks("info-frame: tangent")) full.inputs |= ILAW_INPUT_TANGENT;
