@@ -1,5 +1,4 @@
-// inputs.hpp - what a batch is given at one step, node by node, and steps one after another; the same in
-// other units, axes and mirrors.
+// inputs.hpp - what a batch is given at one step, node by node; the same in other axes and forms of H.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -55,32 +54,8 @@ struct Inputs {
   void round_to(const Setup& setup);
 };
 
-using Script = std::vector<Inputs>;
-
-struct ScriptSize {
-  std::size_t nodes = 13, steps = 5;
-};
-// Random nodes with motions and gaps of one size, most of them near contact. In every second script
-// velocities stay or turn back, and normals of the host turn. A law that asks for v_smooth is given it in no,
-// every or every second step. H is a multiple of the identity where
-// "isotropic" says so, or the law can be given no other. Parameters per node differ from node to node.
-Script draw_script(const Trial& trial, Draw& draw, const ScriptSize& size = {}, bool isotropic = false);
-
-// Any v_smooth that impulses of other contacts can make: v_free, the velocity before the step, or another
-// one.
-void draw_smooth(Inputs& in, Draw& draw);
-
-// The parameters of the trial with those of one node as constants.
-Values constants_of(const Trial& trial, const Inputs& in, std::size_t node);
-
 // The axes carried to another normal by the shortest rotation.
 Matrix carried(const Matrix& axes, const Vector& normal);
-// A normal at an angle of at most half a right angle to this one.
-Vector draw_turned(const Vector& normal, std::size_t dimension, Draw& draw);
-
-// Axes of a node: rows are normal and tangents, right-handed.
-Matrix draw_axes(std::size_t dimension, Draw& draw);
-
 // From local axes to axes of which each node has its own, with normals and tangents; the form of H becomes
 // full where it was diagonal.
 Inputs turned(Inputs local, const std::vector<Matrix>& axes);

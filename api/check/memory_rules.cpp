@@ -64,7 +64,7 @@ void all_written(const Subject& subject) {
     for (const Results& found : run(trial, script)) {
       const auto unwritten = [](const std::vector<double>& values) {
         for (const double value : values)
-          if (value == 123456.75) return true;
+          if (value == sentinel) return true;
         return false;
       };
       const char* array = unwritten(found.impulse)                                             ? "impulse"

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "check/inputs.hpp"
+#include "check/field.hpp"
 #include "check/memory.hpp"
+#include "check/script.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -12,8 +13,6 @@
 
 namespace ilaw::check {
 
-// backward: as interleaved, from the last number to the first, by negative strides.
-enum class Order { interleaved, by_component, spread, backward };
 enum class List { none, of_32_bits, of_64_bits };
 // Amounts are an output as others here, by a bit that ilaw.h does not use; single ones by Layout::no_amount.
 inline constexpr std::uint32_t amounts_output = 1U << 31;
@@ -45,42 +44,6 @@ struct Results {
 
   Vector moment_at(std::size_t node) const;  // 0 without spins
   Vector vector(const std::vector<double>& of, std::size_t node, std::size_t dimension) const;
-};
-
-// An array of nodes with some components each, of doubles or floats, between sentinels. spread: added to the
-// node stride of Order::spread, so that arrays of one batch have different ones.
-class Field {
- public:
-  Field() = default;
-  Field(Memory& memory, const char* name, std::size_t components, std::size_t room, Order order, Use use,
-        ilaw_number_type numbers, std::size_t spread = 0);
-
-  bool given() const { return values_ || floats_; }
-  double get(std::size_t node, std::size_t component) const { return number(place(node, component)); }
-  void put(std::size_t node, std::size_t component, double value);
-  ilaw_input input() const;
-  ilaw_output output() const;
-  void clear();
-  // Whether all that belongs to no node of the list still is as clear left it.
-  bool is_untouched_beside(const std::vector<std::size_t>& nodes);
-  const char* name() const { return name_; }
-  std::size_t components() const { return components_; }
-
- private:
-  std::size_t place(std::size_t node, std::size_t component) const {
-    const std::size_t at = node * node_stride_ + component * component_stride_;
-    return is_backward_ ? size_ - 1 - at : at;
-  }
-  std::int64_t stride(std::size_t forward) const {
-    return is_backward_ ? -static_cast<std::int64_t>(forward) : static_cast<std::int64_t>(forward);
-  }
-  double number(std::size_t at) const { return floats_ ? double{floats_[at]} : values_[at]; }
-
-  const char* name_ = "";
-  double* values_ = nullptr;
-  float* floats_ = nullptr;
-  std::size_t components_ = 0, node_stride_ = 0, component_stride_ = 0, size_ = 0;
-  bool is_backward_ = false;
 };
 
 // The arrays of a batch for a trial.

@@ -1,11 +1,10 @@
 // The checker: the sample law keeps every rule, and breaks each that it is told to; so do crashes and the
 // like. The laws of the tree keep all.
-#include "check/report.hpp"
+#include "check_sample.hpp"
+
 #include "check/rule.hpp"
 
 #include <gtest/gtest.h>
-#include <sched.h>
-#include <sys/stat.h>
 #include <tinyxml2.h>
 #include <nlohmann/json.hpp>
 
@@ -21,36 +20,7 @@
 namespace ilaw::check {
 namespace {
 
-using Names = std::set<std::string>;
-
 constexpr double seconds = 1.0;  // for a rule: thousandths are enough, but for those that hang
-
-// Symbols are of the file: no variable hides them.
-const char* file_that(const std::string& breaks) {
-  return breaks == "exports-entry" ? ILAW_SAMPLE_SHARES : ILAW_SAMPLE;
-}
-
-Checked check_sample(const std::string& breaks, const Options& options) {
-  setenv("ILAW_CHECK_BREAK", breaks.c_str(), 1);
-  const std::string file = file_that(breaks);
-  Checked checked{file, options.seeds, check(file, options)};
-  unsetenv("ILAW_CHECK_BREAK");
-  return checked;
-}
-
-Options only(const std::vector<std::string>& ids) {
-  Options options;
-  options.only = ids;
-  options.limits.seconds = 30.0;  // a busy machine breaks no rule
-  return options;
-}
-
-Names broken(const Checked& checked) {
-  Names found;
-  for (const Outcome& outcome : checked.outcomes)
-    if (outcome.verdict == Verdict::broken) found.insert(outcome.rule);
-  return found;
-}
 
 Names with_id_of_rules() {
   Names ids;
@@ -259,83 +229,6 @@ TEST(OtherWays, OfBreakingARuleAreSeenToo) {
     const std::string& seen = checked.outcomes.at(0).finding.seen;
     EXPECT_NE(seen.find(words), std::string::npos) << breaks << ": " << seen;
   }
-}
-
-// "breaks" is the rule, and after a colon what it is broken with.
-void expect_change_named(const std::string& breaks, const std::string& words) {
-  const Checked checked = check_sample(breaks, only({"loading-process", "calls-process"}));
-  EXPECT_EQ(broken(checked), Names{breaks.substr(0, breaks.find(':'))}) << breaks << ": " << text_of(checked);
-  EXPECT_NE(text_of(checked).find(words), std::string::npos) << breaks << ": " << text_of(checked);
-}
-
-TEST(Process, ChangesAreNamed) {
-  const std::pair<const char*, const char*> ways[] = {
-      {"loading-process", "umask from 0022 to 0077"},
-      {"loading-process: entry", "umask from 0022 to 0077"},
-      {"loading-process: locale", "locale from C to C.UTF-8"},
-      {"loading-process: locale of thread", "locale of the thread from that of the process to 0x"},
-      {"loading-process: variable", "environment variable HOME from "},
-      {"loading-process: new variable", "environment variable ILAW_SAMPLE_WAS_HERE from none to '1'"},
-      {"loading-process: descriptor", " from none to /dev/null"},
-      {"loading-process: directory", "current directory from "},
-      {"loading-process: ignored signal", "handler of SIGINT from default to ignored"},
-      {"loading-process: handled signal", "handler of SIGWINCH from default to the function 0x"},
-      {"loading-process: blocked signal", "blocked signals from none to SIGINT"},
-      {"loading-process: stack of handlers", "stack of signal handlers from 0x"},
-      {"loading-process: timer", "timer of SIGALRM from not set to set"},
-      {"loading-process: limit", "limit of descriptors from "},
-      {"loading-process: personality", "personality from 0x"},
-      {"loading-process: thread", "number of threads from 1 to 2"},
-      {"calls-process: refusal: descriptor", "create or destroy changed descriptor "},
-      {"calls-process: info: timer", "create or destroy changed timer"},
-      {"calls-process: destroy: handled signal", "create or destroy changed handler of SIGWINCH"},
-      {"calls-process: evaluate: variable", "evaluate changed environment variable HOME"},
-      {"calls-process: evaluate: rounding", "rounding mode from to nearest to upward"}};
-  const mode_t mask = umask(0022);
-  for (const auto& [breaks, words] : ways) expect_change_named(breaks, words);
-  umask(mask);
-}
-
-TEST(Process, ProcessorsAreNamed) {
-  cpu_set_t processors;
-  CPU_ZERO(&processors);
-  ASSERT_EQ(sched_getaffinity(0, sizeof processors, &processors), 0);
-  if (CPU_COUNT(&processors) < 2) GTEST_SKIP() << "a machine of one processor";
-  expect_change_named("loading-process: processors", "number of processors to run on from ");
-}
-
-#if defined(__x86_64__)
-TEST(Process, ModesOfNumbersAreNamed) {
-  expect_change_named("loading-process: x87 registers", "number of x87 registers in use from 0 to ");
-  expect_change_named("calls-process: evaluate: x87 registers",
-                      "evaluate changed number of x87 registers in use from 0 to 8");
-  expect_change_named("calls-process: evaluate: x87 control",
-                      "evaluate changed x87 control word from 0x37f to 0x27f");
-  expect_change_named("calls-process: initialise: flushing",
-                      "initialise changed MXCSR without flags from 0x1f80 to 0x9fc0");
-}
-
-// The loader refuses such a library itself.
-TEST(Process, ModesOfNumbersAreKeptByLoading) {
-  for (const char* breaks :
-       {"loading-process: rounding", "loading-process: flushing", "loading-process: x87 control"}) {
-    const Checked checked = check_sample(breaks, only({"loading-process"}));
-    EXPECT_EQ(broken(checked), Names{"library-opens"}) << breaks;
-    EXPECT_NE(text_of(checked).find("changed how the processor rounds"), std::string::npos) << breaks;
-  }
-}
-#endif
-
-TEST(Exports, AreNamed) {
-  const Checked checked = check_sample("exports-entry", only({"exports-entry"}));
-  ASSERT_EQ(broken(checked), Names{"exports-entry"});
-  const std::string& seen = checked.outcomes.at(0).finding.seen;
-  EXPECT_NE(seen.find("exports 3 symbols: "), std::string::npos) << seen;
-  EXPECT_NE(seen.find("calls() (weak)"), std::string::npos) << seen;
-  EXPECT_NE(seen.find("count_call"), std::string::npos) << seen;
-#if defined(__GNUC__) && !defined(__clang__)
-  EXPECT_NE(seen.find("calls()::count (unique in the process)"), std::string::npos) << seen;
-#endif
 }
 
 // Whatever ends a process: the words, and nothing but this one rule.
