@@ -23,6 +23,8 @@ struct Bad {
 const Bad bad_inputs[] = {
     {"v_free NaN", &Inputs::v_free, nan, 0, false},
     {"v_free infinite", &Inputs::v_free, -infinity, 0, false},
+    {"v_smooth NaN", &Inputs::v_smooth, nan, ILAW_INPUT_V_SMOOTH, false},
+    {"v_smooth infinite", &Inputs::v_smooth, infinity, ILAW_INPUT_V_SMOOTH, false},
     {"delassus 0", &Inputs::delassus, 0.0, 0, true},
     {"delassus negative", &Inputs::delassus, -1.0, 0, true},
     {"delassus NaN", &Inputs::delassus, nan, 0, false},
@@ -203,6 +205,8 @@ void extremes(const Subject& subject) {
         const double most = trial.setup.floats() ? 38.0 : 308.0;
         const double size = std::pow(10.0, draw.within(-most - 12.0, most));
         for (std::size_t c = 0; c < in.dimension; ++c) in.v_free[i * in.dimension + c] *= size;
+        if (!in.v_smooth.empty() && i % 4 != 0)
+          in.set_vector(in.v_smooth, i, scaled(size, in.vector(in.v_smooth, i)));
         if (in.spins())
           in.set_vector(in.spin_free, i, scaled(i % 5 == 0 ? 1.0 : size, in.vector(in.spin_free, i)));
         if (i % 3 == 0) in.gap[i] *= std::pow(10.0, draw.within(-most, most));

@@ -196,6 +196,7 @@ void array_numbers(const Subject& subject) {
   }
         const Array all[] = {
             ILAW_CHECK_ARRAY(true, v_free),
+            ILAW_CHECK_ARRAY(!in.v_smooth.empty(), v_smooth),
             ILAW_CHECK_ARRAY(true, delassus),
             ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_GAP), gap),
             ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_GAP), gap_offset),

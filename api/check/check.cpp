@@ -64,9 +64,10 @@ Reach read_reach(const json& text) {
 json verdict_of(const std::string& file, const std::string& law, const Rule& rule, std::uint64_t seed,
                 const Options& options) {
   try {
+    const ProcessState before_loading;
     calling("the loader");
     const ilaw::library library(file);
-    rule.judge({library, *library.law(law), seed, options.parameters});
+    rule.judge({library, *library.law(law), seed, options.parameters, before_loading});
     return json::object();
   } catch (const Finding& finding) {
     return written(finding);

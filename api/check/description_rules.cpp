@@ -3,6 +3,7 @@
 #include "check/rule.hpp"
 #include "check/sandbox.hpp"
 #include "check/units.hpp"
+#include "check/watch.hpp"
 
 #include <dlfcn.h>
 
@@ -14,6 +15,30 @@ namespace ilaw::check {
 namespace {
 
 void opens(const Subject&) {}  // nobody would come here else
+
+// Default visibility shares statics of inline functions between libraries, since their symbols are unique in
+// a process (STB_GNU_UNIQUE), and lets a function of the host replace one of the law.
+void exports_entry(const Subject& subject) {
+  constexpr std::size_t most_named = 8;
+  const std::optional<std::vector<Exported>> all = exported_symbols(subject.library.path());
+  if (!all) throw NotJudged{"the library's table of symbols was not found"};
+  std::string names;
+  std::size_t count = 0;
+  for (const Exported& symbol : *all) {
+    if (symbol.name == ILAW_ENTRY_NAME || ++count > most_named) continue;
+    names += (names.empty() ? "" : ", ") + symbol.name +
+             (symbol.is_unique ? " (unique in the process)"
+              : symbol.is_weak ? " (weak)"
+                               : "");
+  }
+  if (count > most_named) names += ", ...";
+  if (count > 0)
+    throw Finding{"beside its entry the library exports " + std::to_string(count) +
+                      (count == 1 ? " symbol: " : " symbols: ") + names,
+                  ILAW_ENTRY_NAME " alone: compile with -fvisibility=hidden, link with a version script",
+                  {},
+                  {}};
+}
 
 std::string all_of(const ilaw_law& law) {
   std::string text = std::string(law.id) + "|" + law.title + "|" + law.doc;
@@ -274,6 +299,8 @@ std::vector<Rule> description_rules() {
   return {
       {opens_id, "The loader opens the library: it is a law library with a sound description.",
        "abi.md, The loader", Needs::nothing, opens},
+      {"exports-entry", "A library exports its entry, and nothing else.", "ilaw.h, ILAW_ENTRY",
+       Needs::library, exports_entry},
       {creates_id,
        "Some parameters within the described ranges are accepted in every dimension, form of H, frame and "
        "number type that the law serves.",

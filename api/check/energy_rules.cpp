@@ -73,7 +73,6 @@ void fly(const Subject& subject, Look look) {
           in.velocity_step = in.position_step = 0x1p-10;
           for (std::size_t i = 0; i < point_count; ++i)
             in.gap[i] = in.gap_offset[i] + draw.within(0.0, 3.0) * in.position_step;
-          in.round_to(trial.setup);
           Heap heap;
           Arrays arrays(trial, in, {}, heap);
           arrays.initialise(in);
@@ -82,6 +81,9 @@ void fly(const Subject& subject, Look look) {
           for (std::size_t k = 0; k < steps; ++k) {
             in.v_previous = in.v_free;
             in.spin_previous = in.spin_free;
+            in.v_smooth.clear();
+            if (flight > 0 && trial.reads(ILAW_INPUT_V_SMOOTH)) draw_smooth(in, draw);
+            in.round_to(trial.setup);
             const Results found = arrays.evaluate(in);
             if (found.code != ILAW_OK) break;
             if (std::isfinite(found.report.stable_velocity_step) && found.report.stable_velocity_step > 0.0)
@@ -92,7 +94,6 @@ void fly(const Subject& subject, Look look) {
               terms[i] = terms_of(in, found, i);
               go_on(in, found, i);
             }
-            in.round_to(trial.setup);
             in.time += in.position_step;
             // Every second flight in steps that differ: a velocity step lies between two positions' middles.
             const double last = in.position_step;
@@ -137,6 +138,7 @@ Inputs approaching(const Trial& trial, Draw& draw) {
   Vector v{};
   for (std::size_t c = 0; c < in.dimension; ++c) v[c] = -draw.within(0.2, 1.0) * n[c];
   in.set_vector(in.v_free, 0, v);
+  in.v_smooth.clear();  // it is v_free
   return in;
 }
 
@@ -219,8 +221,8 @@ void stable_step_bound(const Subject& subject) {
 
 std::vector<Rule> energy_rules() {
   return {{"energy-made",
-           "A node without force gains no energy: the work of impulse and moment and what is stored more "
-           "is not positive.",
+           "A node without force gains no energy, whatever v_smooth is: the work of impulse and moment and "
+           "what is stored more is not positive.",
            "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, not_made},
           {"energy-balance", "The parts of the energy are what becomes of the work of impulse and moment.",
            "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, balanced},

@@ -24,6 +24,7 @@ Script hostile(const Trial& trial, Draw& draw) {
     for (std::size_t k = 0; k < odd.size(); ++k) {
       in.v_free[(4 * k + 1) * in.dimension] = odd[k];
       in.v_previous[(4 * k + 2) * in.dimension] = odd[k];
+      if (!in.v_smooth.empty()) in.v_smooth[4 * k * in.dimension] = odd[k];
       in.gap[4 * k + 3] = odd[k];
     }
   return script;

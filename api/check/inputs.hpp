@@ -1,5 +1,4 @@
-// inputs.hpp - what a batch is given at one step, node by node, and steps one after another; the same in
-// other units, axes and mirrors.
+// inputs.hpp - what a batch is given at one step, node by node; the same in other axes and forms of H.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -28,13 +27,13 @@ struct Motion {
 };
 
 // Values of each node in turn: d components of a vector, as many of H as its form has, one of the others.
-// Spins are empty where the form of H has none.
+// Spins are empty if the form of H has none, v_smooth if this step is not given it.
 struct Inputs {
   std::size_t count = 0, dimension = 3, form_width = 1;
   std::uint32_t form = ILAW_DELASSUS_SCALAR;
   double time = 0.0, velocity_step = 0.0, position_step = 0.0;
-  std::vector<double> v_free, delassus, gap, gap_offset, v_previous, area, normal, tangent, spin_free,
-      spin_previous;
+  std::vector<double> v_free, v_smooth, delassus, gap, gap_offset, v_previous, area, normal, tangent,
+      spin_free, spin_previous;
   std::vector<std::vector<double>> per_node;
 
   Vector vector(const std::vector<double>& of, std::size_t node) const;
@@ -47,7 +46,7 @@ struct Inputs {
   // H r + k n x m, and J m - k n x r.
   Motion gained(std::size_t node, const Vector& r, const Vector& m) const;
   Vector normal_at(std::size_t node) const;
-  // g of "out of reach", and whether the node is (ilaw.h).
+  // g of "out of reach", and whether the node is, by v_free and by v_smooth if given (ilaw.h).
   double slack(std::size_t node) const;
   bool is_out_of_reach(std::size_t node) const;
   std::vector<NamedArray> arrays_of(std::size_t node) const;
@@ -55,27 +54,8 @@ struct Inputs {
   void round_to(const Setup& setup);
 };
 
-using Script = std::vector<Inputs>;
-
-struct ScriptSize {
-  std::size_t nodes = 13, steps = 5;
-};
-// Random nodes with motions and gaps of one size, most of them near contact. In every second script
-// velocities stay or turn back, and normals of the host turn. H is a multiple of the identity where
-// "isotropic" says so, or the law can be given no other. Parameters per node differ from node to node.
-Script draw_script(const Trial& trial, Draw& draw, const ScriptSize& size = {}, bool isotropic = false);
-
-// The parameters of the trial with those of one node as constants.
-Values constants_of(const Trial& trial, const Inputs& in, std::size_t node);
-
 // The axes carried to another normal by the shortest rotation.
 Matrix carried(const Matrix& axes, const Vector& normal);
-// A normal at an angle of at most half a right angle to this one.
-Vector draw_turned(const Vector& normal, std::size_t dimension, Draw& draw);
-
-// Axes of a node: rows are normal and tangents, right-handed.
-Matrix draw_axes(std::size_t dimension, Draw& draw);
-
 // From local axes to axes of which each node has its own, with normals and tangents; the form of H becomes
 // full where it was diagonal.
 Inputs turned(Inputs local, const std::vector<Matrix>& axes);

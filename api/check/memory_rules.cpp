@@ -64,7 +64,7 @@ void all_written(const Subject& subject) {
     for (const Results& found : run(trial, script)) {
       const auto unwritten = [](const std::vector<double>& values) {
         for (const double value : values)
-          if (value == 123456.75) return true;
+          if (value == sentinel) return true;
         return false;
       };
       const char* array = unwritten(found.impulse)                                             ? "impulse"
@@ -97,8 +97,9 @@ void initialise_reads(const Subject& subject) {
         if (arrays.initialise(script[0]) < 0) return false;
         const std::vector<double> expected = arrays.state();
         ilaw_batch& batch = arrays.batch();
-        for (ilaw_input* one : {&batch.v_free, &batch.delassus, &batch.gap, &batch.gap_offset,
-                                &batch.v_previous, &batch.state_in, &batch.spin_free, &batch.spin_previous})
+        for (ilaw_input* one :
+             {&batch.v_free, &batch.v_smooth, &batch.delassus, &batch.gap, &batch.gap_offset,
+              &batch.v_previous, &batch.state_in, &batch.spin_free, &batch.spin_previous})
           *one = {};
         for (ilaw_output* one : {&batch.impulse, &batch.velocity, &batch.energy, &batch.moment, &batch.spin})
           *one = {};

@@ -1,4 +1,4 @@
-// Rules: what evaluate may not do beside computing.
+// Rules: what a library may not do to its process, and evaluate beside computing.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/rule.hpp"
 #include "check/sandbox.hpp"
@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 namespace ilaw::check {
 namespace {
@@ -87,6 +88,47 @@ void prints(const Subject& subject) {
         std::to_string(written.st_size) + " bytes were written to stdout and stderr", "nothing", {}, {}};
 }
 
+[[noreturn]] void fail_changed(const std::string& call, const std::string& changes, const Trial* trial) {
+  throw Finding{call + " changed " + changes, "nothing of the process", trial ? trial->text() : "", {}};
+}
+
+void loading(const Subject& subject) {
+  const ProcessState after;
+  if (const std::string changes = subject.before_loading.changes_to(after); !changes.empty())
+    fail_changed("loading and describing the library", changes, nullptr);
+}
+
+// After each call, also where create refuses and where input is bad.
+void calls(const Subject& subject) {
+  const ProcessState before;
+  for_trials(subject, [&before](const Trial& trial, Draw& draw) {
+    const auto expect_kept = [&](const char* call) {
+      const ProcessState after;
+      if (const std::string changes = before.changes_to(after); !changes.empty())
+        fail_changed(call, changes, &trial);
+    };
+    create(trial.law, trial.setup, with(trial.values, {"nobody_has_this", ILAW_KIND_VALUE_NUMBER, 1.0}));
+    expect_kept("create or destroy");
+    std::optional<Trial> own(std::in_place, trial.law, trial.setup, trial.values);
+    expect_kept("info");
+    Script script = draw_script(*own, draw, {5, 2});
+    script[1].v_free[0] = std::nan("");
+    {
+      Heap heap;
+      Arrays arrays(*own, script[0], {}, heap);
+      arrays.initialise(script[0]);
+      expect_kept("initialise");
+      for (const Inputs& in : script) {
+        arrays.evaluate(in);
+        expect_kept("evaluate");
+      }
+    }
+    own.reset();
+    expect_kept("destroy");
+    return true;
+  });
+}
+
 }  // namespace
 
 std::vector<Rule> quiet_rules() {
@@ -99,7 +141,15 @@ std::vector<Rule> quiet_rules() {
           {"evaluate-ends", "evaluate neither ends the process nor handles signals.", "ilaw.h, Conventions",
            Needs::motion, ending},
           {"evaluate-system", "evaluate makes no system call.", source, Needs::motion, system_calls},
-          {"prints-nothing", "No function prints.", "ilaw.h, Conventions", Needs::motion, prints}};
+          {"prints-nothing", "No function prints.", "ilaw.h, Conventions", Needs::motion, prints},
+          {"loading-process",
+           "Loading and describing a library changes nothing of the process: no file, signal, locale, "
+           "variable, limit or mode of numbers.",
+           "ilaw.h, Conventions", Needs::library, loading},
+          {"calls-process",
+           "create, info, initialise, evaluate and destroy change nothing of the process, and leave the x87 "
+           "registers empty.",
+           "ilaw.h, Conventions", Needs::motion, calls}};
 }
 
 }  // namespace ilaw::check

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "check/process.hpp"
 #include "check/run.hpp"
 
 #include <ilaw/loader.hpp>
@@ -20,6 +21,7 @@ struct Subject {
   const ilaw_law& law;
   std::uint64_t seed;
   const std::optional<Values>& given;
+  const ProcessState& before_loading;
 };
 
 // Prerequisites for judging a rule.

@@ -13,7 +13,6 @@
 namespace ilaw::check {
 namespace {
 
-constexpr double sentinel = 123456.75;
 constexpr std::uint8_t status_sentinel = 99;
 
 std::optional<Difference> difference(const char* name, const std::vector<double>& a,
@@ -52,51 +51,6 @@ Vector Results::moment_at(std::size_t node) const {
   return moment.empty() ? Vector{} : vector(moment, node, 3);
 }
 
-Field::Field(Memory& memory, const char* name, std::size_t components, std::size_t room, Order order, Use use,
-             ilaw_number_type numbers)
-    : name_(name), components_(components), is_backward_(order == Order::backward) {
-  node_stride_ = order == Order::by_component ? 1 : order == Order::spread ? 2 * components + 1 : components;
-  component_stride_ = order == Order::by_component ? room + 3 : order == Order::spread ? 2 : 1;
-  size_ = components == 0 ? 0 : (room - 1) * node_stride_ + (components - 1) * component_stride_ + 1;
-  if (numbers == ILAW_NUMBERS_FLOAT)
-    floats_ = static_cast<float*>(memory.take(name, size_ * sizeof(float), use));
-  else
-    values_ = static_cast<double*>(memory.take(name, size_ * sizeof(double), use));
-  clear();
-}
-
-void Field::put(std::size_t node, std::size_t component, double value) {
-  if (floats_)
-    floats_[place(node, component)] = static_cast<float>(value);
-  else
-    values_[place(node, component)] = value;
-}
-ilaw_input Field::input() const {
-  const std::size_t first = size_ > 0 ? place(0, 0) : 0;
-  return {values_ ? values_ + first : nullptr, floats_ ? floats_ + first : nullptr, stride(node_stride_),
-          stride(component_stride_)};
-}
-ilaw_output Field::output() const {
-  const std::size_t first = size_ > 0 ? place(0, 0) : 0;
-  return {values_ ? values_ + first : nullptr, floats_ ? floats_ + first : nullptr, stride(node_stride_),
-          stride(component_stride_)};
-}
-void Field::clear() {
-  if (floats_)
-    std::fill_n(floats_, size_, static_cast<float>(sentinel));
-  else
-    std::fill_n(values_, size_, sentinel);
-}
-
-bool Field::is_untouched_beside(const std::vector<std::size_t>& nodes) {
-  std::vector<bool> used(size_);
-  for (const std::size_t node : nodes)
-    for (std::size_t c = 0; c < components_; ++c) used[place(node, c)] = true;
-  for (std::size_t k = 0; k < size_; ++k)
-    if (!used[k] && !same_bits(number(k), sentinel)) return false;
-  return true;
-}
-
 Arrays::Arrays(const Trial& trial, const Inputs& first, const Layout& layout, Memory& memory)
     : trial_(trial), layout_(layout), memory_(memory) {
   if (layout_.nodes.empty()) {
@@ -128,6 +82,10 @@ void Arrays::make_list(Memory& memory) {
   }
 }
 
+Field Arrays::made(const char* name, std::size_t width, Use use, ilaw_number_type numbers) {
+  return Field(memory_, name, width, room_, layout_.order, use, numbers, made_++ % 3);
+}
+
 void Arrays::make_inputs(const Inputs& first, Memory& memory) {
   const std::size_t d = first.dimension;
   const std::uint32_t wanted =
@@ -135,9 +93,11 @@ void Arrays::make_inputs(const Inputs& first, Memory& memory) {
       (layout_.outputs & (ILAW_OUTPUT_ENERGY | amounts_output) ? trial_.info.balance_inputs : 0U);
   const auto make = [&](const char* name, std::size_t width, std::uint32_t bit) {
     const Use use = (wanted & bit) == bit ? Use::input : Use::unneeded;
-    return Field(memory, name, width, room_, layout_.order, use, trial_.setup.numbers);
+    return made(name, width, use, trial_.setup.numbers);
   };
   v_free_ = make("v_free", d, 0);
+  if (layout_.unasked || trial_.reads(ILAW_INPUT_V_SMOOTH))
+    v_smooth_ = make("v_smooth", d, ILAW_INPUT_V_SMOOTH);
   delassus_ = make("delassus", first.form_width, 0);
   gap_ = make("gap", 1, ILAW_INPUT_GAP);
   gap_offset_ = make("gap_offset", 1, ILAW_INPUT_GAP);
@@ -160,10 +120,10 @@ void Arrays::make_inputs(const Inputs& first, Memory& memory) {
 
 void Arrays::make_outputs(Memory& memory) {
   const auto make = [&](const char* name, std::size_t width, Use use) {
-    return Field(memory, name, width, room_, layout_.order, use, trial_.setup.numbers);
+    return made(name, width, use, trial_.setup.numbers);
   };
   const auto make_state = [&](const char* name, Use use) {
-    return Field(memory, name, trial_.info.state_size, room_, layout_.order, use, ILAW_NUMBERS_DOUBLE);
+    return made(name, trial_.info.state_size, use, ILAW_NUMBERS_DOUBLE);
   };
   const std::uint32_t outputs = layout_.outputs & (trial_.law.outputs | spin_output);
   const std::size_t d = trial_.setup.dimension;
@@ -199,6 +159,7 @@ void Arrays::describe() {
   batch_.index = index_;
   batch_.index64 = index64_;
   batch_.v_free = v_free_.input();
+  if (v_smooth_.given()) batch_.v_smooth = v_smooth_.input();
   batch_.delassus = delassus_.input();
   batch_.gap = gap_.input();
   batch_.gap_offset = gap_offset_.input();
@@ -234,6 +195,9 @@ void Arrays::load(const Inputs& in) {
   batch_.position_step = in.position_step;
   batch_.gap_offset = in.gap_offset.empty() ? ilaw_input{} : gap_offset_.input();
   load_one(v_free_, in.v_free);
+  if (trial_.reads(ILAW_INPUT_V_SMOOTH))
+    batch_.v_smooth = in.v_smooth.empty() ? ilaw_input{} : v_smooth_.input();
+  if (!in.v_smooth.empty()) load_one(v_smooth_, in.v_smooth);
   load_one(delassus_, in.delassus);
   load_one(gap_, in.gap);
   if (!in.gap_offset.empty()) load_one(gap_offset_, in.gap_offset);

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "check/inputs.hpp"
+#include "check/field.hpp"
 #include "check/memory.hpp"
+#include "check/script.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -12,8 +13,6 @@
 
 namespace ilaw::check {
 
-// backward: as interleaved, from the last number to the first, by negative strides.
-enum class Order { interleaved, by_component, spread, backward };
 enum class List { none, of_32_bits, of_64_bits };
 // Amounts are an output as others here, by a bit that ilaw.h does not use; single ones by Layout::no_amount.
 inline constexpr std::uint32_t amounts_output = 1U << 31;
@@ -27,6 +26,7 @@ struct Layout {
   std::int32_t index_base = 0;
   std::size_t spare = 0;  // nodes of the arrays that are on no list
   bool in_place = false;  // state_out is state_in
+  bool unasked = true;    // v_smooth is there for a law that does not ask for it
   std::uint32_t outputs = all_outputs;
   std::optional<std::size_t> no_amount{};  // this one is not asked for
   std::vector<std::size_t> nodes{};        // of the script, in their order; empty: all
@@ -44,41 +44,6 @@ struct Results {
 
   Vector moment_at(std::size_t node) const;  // 0 without spins
   Vector vector(const std::vector<double>& of, std::size_t node, std::size_t dimension) const;
-};
-
-// An array of nodes with some components each, of doubles or floats, between sentinels.
-class Field {
- public:
-  Field() = default;
-  Field(Memory& memory, const char* name, std::size_t components, std::size_t room, Order order, Use use,
-        ilaw_number_type numbers);
-
-  bool given() const { return values_ || floats_; }
-  double get(std::size_t node, std::size_t component) const { return number(place(node, component)); }
-  void put(std::size_t node, std::size_t component, double value);
-  ilaw_input input() const;
-  ilaw_output output() const;
-  void clear();
-  // Whether all that belongs to no node of the list still is as clear left it.
-  bool is_untouched_beside(const std::vector<std::size_t>& nodes);
-  const char* name() const { return name_; }
-  std::size_t components() const { return components_; }
-
- private:
-  std::size_t place(std::size_t node, std::size_t component) const {
-    const std::size_t at = node * node_stride_ + component * component_stride_;
-    return is_backward_ ? size_ - 1 - at : at;
-  }
-  std::int64_t stride(std::size_t forward) const {
-    return is_backward_ ? -static_cast<std::int64_t>(forward) : static_cast<std::int64_t>(forward);
-  }
-  double number(std::size_t at) const { return floats_ ? double{floats_[at]} : values_[at]; }
-
-  const char* name_ = "";
-  double* values_ = nullptr;
-  float* floats_ = nullptr;
-  std::size_t components_ = 0, node_stride_ = 0, component_stride_ = 0, size_ = 0;
-  bool is_backward_ = false;
 };
 
 // The arrays of a batch for a trial.
@@ -100,6 +65,7 @@ class Arrays {
   void load(const Inputs& in);
 
  private:
+  Field made(const char* name, std::size_t width, Use use, ilaw_number_type numbers);
   void make_list(Memory& memory);
   void make_inputs(const Inputs& first, Memory& memory);
   void make_outputs(Memory& memory);
@@ -112,11 +78,11 @@ class Arrays {
   const Trial& trial_;
   Layout layout_;
   Memory& memory_;
-  std::size_t room_;
+  std::size_t room_, made_ = 0;
   std::vector<std::size_t> places_;  // in the arrays, of each node of the batch
   ilaw_batch batch_{};
   ilaw_report report_{};
-  Field v_free_, delassus_, gap_, gap_offset_, v_previous_, area_, normal_, tangent_, spin_free_,
+  Field v_free_, v_smooth_, delassus_, gap_, gap_offset_, v_previous_, area_, normal_, tangent_, spin_free_,
       spin_previous_;
   Field state_in_, state_out_, impulse_, velocity_, energy_, moment_, spin_;
   std::vector<Field> per_node_, amounts_;

@@ -17,6 +17,11 @@ Inputs Shake::operator()(Inputs in) {
   for (std::size_t i = 0; i < in.count; ++i) {
     const double speed = length(in.vector(in.v_free, i));
     for (std::size_t c = 0; c < in.dimension; ++c) in.v_free[i * in.dimension + c] += rounding_of(speed);
+    if (!in.v_smooth.empty()) {
+      const double smooth_speed = length(in.vector(in.v_smooth, i));
+      for (std::size_t c = 0; c < in.dimension; ++c)
+        in.v_smooth[i * in.dimension + c] += rounding_of(smooth_speed);
+    }
     if (in.spins()) {
       const double turning = length(in.vector(in.spin_free, i));
       for (std::size_t c = 0; c < in.dimension; ++c)

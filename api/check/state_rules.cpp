@@ -14,23 +14,33 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b, std::
   return width == 0 || std::memcmp(&a[node * width], &b[node * width], width * sizeof(double)) == 0;
 }
 
-// Velocities that close the gap exactly but for rounding, and an ulp beside that.
+// Closes the gap exactly but for rounding, or an ulp beside that.
+double draw_closing(const Inputs& in, std::size_t node, Draw& draw) {
+  const double closing = -in.slack(node) / in.position_step;
+  return draw.one_in(3)   ? closing
+         : draw.one_in(2) ? std::nextafter(closing, -1e9)
+                          : std::nextafter(closing, 1e9);
+}
+
+Vector along_normal(const Inputs& in, const Vector& n, double speed) {
+  Vector v{};
+  for (std::size_t c = 0; c < in.dimension; ++c) v[c] = in.normal.empty() && c > 0 ? 0.25 : speed * n[c];
+  return v;
+}
+
+// Velocities that close the gap or just do not; one of v_free and v_smooth may leave it wide open.
 void draw_borderline(Inputs& in, Draw& draw) {
   for (std::size_t i = 0; i < in.count; ++i) {
     const double gap = 1e-3 * static_cast<double>(1 + draw.below(99));
     in.gap[i] = in.gap_offset[i] + gap;
-    const double closing = -in.slack(i) / in.position_step;
-    const double along = draw.one_in(3)   ? closing
-                         : draw.one_in(2) ? std::nextafter(closing, -1e9)
-                                          : std::nextafter(closing, 1e9);
     const Vector n = in.normal_at(i);
-    Vector v{}, before{};
-    for (std::size_t c = 0; c < in.dimension; ++c) {
-      v[c] = in.normal.empty() && c > 0 ? 0.25 : along * n[c];
-      before[c] = -3.0 * n[c];
+    double along = draw_closing(in, i, draw);
+    if (!in.v_smooth.empty()) {
+      in.set_vector(in.v_smooth, i, along_normal(in, n, draw.one_in(3) ? 1.0 : draw_closing(in, i, draw)));
+      if (draw.one_in(3)) along = 1.0;
     }
-    in.set_vector(in.v_free, i, v);
-    in.set_vector(in.v_previous, i, before);
+    in.set_vector(in.v_free, i, along_normal(in, n, along));
+    in.set_vector(in.v_previous, i, scaled(-3.0, n));
   }
 }
 

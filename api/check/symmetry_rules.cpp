@@ -301,6 +301,7 @@ void mirror(const Subject& subject) {
           for (std::size_t i = 0; i < in.count; ++i) {
             in.v_free[i * in.dimension + 1] *= -1.0;
             in.v_previous[i * in.dimension + 1] *= -1.0;
+            if (!in.v_smooth.empty()) in.v_smooth[i * in.dimension + 1] *= -1.0;
             if (own.spins())  // of an axial vector the components in the mirror change their sign
               for (const std::size_t c : {0U, 2U}) {
                 in.spin_free[i * in.dimension + c] *= -1.0;
@@ -371,6 +372,7 @@ Inputs in_units(Inputs in, const Units& units) {
     for (double& value : values) value *= factor;
   };
   scale(in.v_free, units.velocity());
+  scale(in.v_smooth, units.velocity());
   scale(in.v_previous, units.velocity());
   scale(in.delassus, 1.0 / units.mass);
   scale(in.spin_free, 1.0 / units.time);

@@ -3,6 +3,7 @@
 
 #include "check/sandbox.hpp"
 
+#include <cxxabi.h>
 #include <dlfcn.h>
 #include <elf.h>
 #include <link.h>
@@ -16,9 +17,11 @@
 #include <algorithm>
 #include <array>
 #include <climits>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <memory>
 #include <utility>
 
 namespace ilaw::check {
@@ -136,6 +139,7 @@ struct Dynamic {
   ElfW(Addr) base = 0;
   const ElfW(Sym) * symbols = nullptr;
   const char* strings = nullptr;
+  const std::uint32_t *hash = nullptr, *gnu_hash = nullptr;
   const ElfW(Rela) * tables[2] = {nullptr, nullptr};
   std::size_t sizes[2] = {0, 0};
 };
@@ -144,8 +148,16 @@ Dynamic dynamic_of(const link_map& map) {
   Dynamic found;
   found.base = map.l_addr;
   for (const ElfW(Dyn)* entry = map.l_ld; entry->d_tag != DT_NULL; ++entry) {
-    const void* const address = reinterpret_cast<const void*>(entry->d_un.d_ptr);
+    // Some C libraries leave the addresses as they are in the file.
+    const ElfW(Addr) offset = entry->d_un.d_ptr < map.l_addr ? map.l_addr : 0;
+    const void* const address = reinterpret_cast<const void*>(entry->d_un.d_ptr + offset);
     switch (entry->d_tag) {
+      case DT_HASH:
+        found.hash = static_cast<const std::uint32_t*>(address);
+        break;
+      case DT_GNU_HASH:
+        found.gnu_hash = static_cast<const std::uint32_t*>(address);
+        break;
       case DT_SYMTAB:
         found.symbols = static_cast<const ElfW(Sym)*>(address);
         break;
@@ -171,14 +183,52 @@ Dynamic dynamic_of(const link_map& map) {
   return found;
 }
 
+// One past the last symbol that a lookup finds: the last bucket in use begins the last chain, which a set
+// lowest bit ends (GNU hash); DT_HASH has the number of symbols.
+std::size_t symbol_count(const Dynamic& file) {
+  if (!file.gnu_hash) return file.hash ? file.hash[1] : 0;
+  const std::uint32_t buckets = file.gnu_hash[0], first = file.gnu_hash[1], bloom_size = file.gnu_hash[2];
+  const std::uint32_t* const bucket = file.gnu_hash + 4 + bloom_size * (sizeof(ElfW(Addr)) / 4);
+  const std::uint32_t* const chain = bucket + buckets;
+  std::size_t last = *std::max_element(bucket, bucket + buckets);
+  if (last < first) return first;
+  while (!(chain[last - first] & 1U)) ++last;
+  return last + 1;
+}
+
+// Calls look with the dynamic section of a loaded library; false if it has none.
+bool with_dynamic(const std::string& library, const std::function<void(const Dynamic& file)>& look) {
+  void* handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
+  link_map* map = nullptr;
+  const bool found = handle && dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0 && map;
+  if (found) look(dynamic_of(*map));
+  if (handle) dlclose(handle);
+  return found;
+}
+
+bool is_exported(const ElfW(Sym) & symbol) {
+  const unsigned binding = ELF64_ST_BIND(symbol.st_info), visibility = ELF64_ST_VISIBILITY(symbol.st_other);
+  return symbol.st_shndx != SHN_UNDEF && symbol.st_shndx != SHN_ABS && binding != STB_LOCAL &&
+         (visibility == STV_DEFAULT || visibility == STV_PROTECTED);
+}
+
+bool is_of_linker(const std::string& name) {
+  constexpr std::array names{"_init",         "_fini",       "_edata",     "_end",   "__bss_start",
+                             "__bss_start__", "__bss_end__", "_bss_end__", "__end__"};
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string demangled(const char* name) {
+  int status = 0;
+  const std::unique_ptr<char, decltype(&std::free)> text(abi::__cxa_demangle(name, nullptr, nullptr, &status),
+                                                         &std::free);
+  return text ? text.get() : name;
+}
+
 // Calls look for each place that holds the address of a function of another library, with its name.
 void for_imports(const std::string& library,
                  const std::function<void(void** place, const char* name)>& look) {
-  void* handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
-  link_map* map = nullptr;
-  if (!handle) return;
-  if (dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0 && map) {
-    const Dynamic file = dynamic_of(*map);
+  with_dynamic(library, [&](const Dynamic& file) {
     for (int t = 0; t < 2; ++t)
       for (std::size_t k = 0; file.tables[t] && k < file.sizes[t]; ++k) {
         const ElfW(Rela)& entry = file.tables[t][k];
@@ -187,8 +237,7 @@ void for_imports(const std::string& library,
         look(reinterpret_cast<void**>(file.base + entry.r_offset),
              file.strings + file.symbols[symbol].st_name);
       }
-  }
-  dlclose(handle);
+  });
 }
 
 void make_writable(const void* place) {
@@ -198,6 +247,22 @@ void make_writable(const void* place) {
 }
 
 }  // namespace
+
+std::optional<std::vector<Exported>> exported_symbols(const std::string& library) {
+  std::optional<std::vector<Exported>> all;
+  with_dynamic(library, [&](const Dynamic& file) {
+    const std::size_t count = file.symbols && file.strings ? symbol_count(file) : 0;
+    if (count > 0) all.emplace();
+    for (std::size_t k = 1; k < count; ++k) {
+      const ElfW(Sym)& symbol = file.symbols[k];
+      const char* const name = file.strings + symbol.st_name;
+      const unsigned binding = ELF64_ST_BIND(symbol.st_info);
+      if (is_exported(symbol) && !is_of_linker(name))
+        all->push_back({demangled(name), binding == STB_WEAK, binding == STB_GNU_UNIQUE});
+    }
+  });
+  return all;
+}
 
 CallWatch::CallWatch(const std::string& library, Forbidden kind) {
   for_imports(library, [&](void** place, const char* name) {

@@ -1,12 +1,21 @@
-// watch.hpp - what a library does inside evaluate beside computing: functions that it calls of others,
-// globals that it changes, system calls.
+// watch.hpp - what a library does beside computing: symbols that it exports, functions of others that
+// evaluate calls, globals that it changes, system calls.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace ilaw::check {
+
+// A symbol of a loaded library that others may bind to.
+struct Exported {
+  std::string name;  // as its source has it
+  bool is_weak = false, is_unique = false;
+};
+// From the dynamic symbol table, without the names that linkers add. None if the table was not found.
+std::optional<std::vector<Exported>> exported_symbols(const std::string& library);
 
 // Kinds of functions that evaluate may not call.
 enum class Forbidden { allocation, lock, input_output, clock, ending };

@@ -73,30 +73,31 @@ static ilaw_amount heat = {sizeof(ilaw_amount), 0, "heat", "J", "Half of what fr
 static const ilaw_amount worn = {sizeof(ilaw_amount), 0, "wear", "m", "A millionth of a meter per joule."};
 static const ilaw_amount* const amounts[] = {&heat, &worn};
 
-static ilaw_law law = {.struct_size = sizeof(ilaw_law),
-                       .dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3,
-                       .delassus_forms = ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL |
-                                         ILAW_DELASSUS_TRANSVERSE_SPIN,
-                       .frames = ILAW_FRAME_LOCAL | ILAW_FRAME_GLOBAL,
-                       .numbers = ILAW_NUMBERS_DOUBLE | ILAW_NUMBERS_FLOAT,
-                       .inputs = ILAW_INPUT_GAP | ILAW_INPUT_AREA | ILAW_INPUT_V_PREVIOUS,
-                       .outputs = ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY,
-                       .permissions = ILAW_MAY_SKIP_FRESH | ILAW_MAY_SKIP_FREE,
-                       .id = "sample",
-                       .title = "One-sided dashpot with friction",
-                       .doc = "Keeps every rule, but the one that it is told to break.",
-                       .parameters = parameters,
-                       .state_variables = state_variables,
-                       .parameter_count = sizeof parameters / sizeof *parameters,
-                       .state_variable_count = 1,
-                       .amount_count = AMOUNT_COUNT,
-                       .amounts = amounts,
-                       .create = sample_create,
-                       .destroy = sample_destroy,
-                       .info = sample_info,
-                       .initialise = sample_initialise,
-                       .evaluate = sample_evaluate,
-                       .extension = sample_extension};
+static ilaw_law law = {
+    .struct_size = sizeof(ilaw_law),
+    .dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3,
+    .delassus_forms =
+        ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL | ILAW_DELASSUS_TRANSVERSE_SPIN,
+    .frames = ILAW_FRAME_LOCAL | ILAW_FRAME_GLOBAL,
+    .numbers = ILAW_NUMBERS_DOUBLE | ILAW_NUMBERS_FLOAT,
+    .inputs = ILAW_INPUT_GAP | ILAW_INPUT_AREA | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_V_SMOOTH,
+    .outputs = ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY,
+    .permissions = ILAW_MAY_SKIP_FRESH | ILAW_MAY_SKIP_FREE,
+    .id = "sample",
+    .title = "One-sided dashpot with friction",
+    .doc = "Keeps every rule, but the one that it is told to break.",
+    .parameters = parameters,
+    .state_variables = state_variables,
+    .parameter_count = sizeof parameters / sizeof *parameters,
+    .state_variable_count = 1,
+    .amount_count = AMOUNT_COUNT,
+    .amounts = amounts,
+    .create = sample_create,
+    .destroy = sample_destroy,
+    .info = sample_info,
+    .initialise = sample_initialise,
+    .evaluate = sample_evaluate,
+    .extension = sample_extension};
 static const ilaw_law* const laws[] = {&law};
 static ilaw_plugin plugin = {.struct_size = sizeof(ilaw_plugin),
                              .abi_major = ILAW_ABI_MAJOR,
@@ -145,6 +146,7 @@ __attribute__((constructor)) static void begin(void) {
   if (breaks("extension-unknown: library")) plugin.extension = library_extension;
   if (breaks("info-within: before")) law.inputs &= ~(uint32_t)ILAW_INPUT_V_PREVIOUS;
   if (breaks("frame-turned")) law.frames = ILAW_FRAME_GLOBAL;
+  disturb("loading-process");
   if (breaks("energy-made")) law.outputs &= ~(uint32_t)ILAW_OUTPUT_ENERGY;
 }
 __attribute__((destructor)) static void end(void) { free(block); }
@@ -152,6 +154,7 @@ __attribute__((destructor)) static void end(void) { free(block); }
 ILAW_EXPORT const ilaw_plugin* ILAW_CALL ILAW_ENTRY(void) {
   static int calls;
   const int again = calls++ % 2;
+  disturb("loading-process: entry");
   if (breaks("description-constant: text")) law.doc = again ? "Keeps some rules." : "Keeps every rule.";
   if (breaks("description-constant: law")) law.id = again ? "example" : "sample";
   return breaks("description-constant") && again ? &other_plugin : &plugin;

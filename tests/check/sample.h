@@ -1,6 +1,7 @@
 /* A law in plain C99 that keeps every rule of `ilaw check`: a one-sided dashpot with friction that wears, and
- * with a moment against spins where the form of H has them. The environment variable ILAW_CHECK_BREAK, read
- * when the library is loaded, names the one rule that it breaks. */
+ * with a moment against spins where the form of H has them. If it is rough, it meets an obstacle that
+ * v_smooth or, without, v_free reaches within the step, and half as hard if v_smooth opens. The environment
+ * variable ILAW_CHECK_BREAK, read when the library is loaded, names the one rule that it breaks. */
 #ifndef ILAW_TESTS_SAMPLE_H
 #define ILAW_TESTS_SAMPLE_H
 
@@ -55,6 +56,9 @@ typedef struct shared_memory {
 } shared_memory;
 shared_memory* shared(void);
 int on_first_thread(void);
+
+/* Changes what a rule on the process forbids; the name goes on with the thing after a colon. */
+void disturb(const char* rule);
 
 void throw_something(void);
 const ilaw_law* sample_law(void);

@@ -8,6 +8,7 @@
 
 /* A refusal: one line, which rules may break. */
 static ilaw_result refuse(char* message, size_t size, ilaw_result code, const char* name, const char* what) {
+  disturb("calls-process: refusal");
   if (breaks("prints-nothing")) fprintf(stderr, "sample: %s\n", what);
   if (message && size > 0)
     snprintf(message, size, "law 'sample': %s: %s", breaks("refusal-message") ? "\n" : name, what);
@@ -156,6 +157,7 @@ ilaw_result ILAW_CALL sample_create(const char* id, const ilaw_setup* setup, ila
   ilaw_instance* made;
   int has_damping = breaks("parameter-missing"), has_temperature = 0;
   uint32_t k;
+  disturb("calls-process");
   if (!result) return ILAW_INVALID_ARGUMENT;
   if (!breaks("refusal-message: instance")) *result = NULL;
   if (message && size > 0) message[0] = '\0';
@@ -210,6 +212,7 @@ static void end_table(quantity* given) {
 
 void ILAW_CALL sample_destroy(ilaw_instance* made) {
   if (!made || breaks("instances-end")) return;
+  disturb("calls-process: destroy");
   end_table(&made->damping);
   end_table(&made->friction);
   free(made->own);
@@ -222,6 +225,7 @@ static const ilaw_amount* const other_amounts[] = {&warmth, &warmth};
 ilaw_result ILAW_CALL sample_info(const ilaw_instance* made, ilaw_instance_info* info) {
   ilaw_instance_info full;
   const uint32_t size = info ? info->struct_size : 0;
+  disturb("calls-process: info");
   if (!made || size < ILAW_INSTANCE_INFO_SIZE_1_0 || breaks("functions-return: info"))
     return ILAW_INVALID_ARGUMENT;
   memset(&full, 0, sizeof full);
@@ -229,7 +233,8 @@ ilaw_result ILAW_CALL sample_info(const ilaw_instance* made, ilaw_instance_info*
   full.inputs = ILAW_INPUT_GAP | ILAW_INPUT_AREA;
   if (made->setup.frame == ILAW_FRAME_GLOBAL && !breaks("info-frame")) full.inputs |= ILAW_INPUT_NORMAL;
   if (made->setup.has_tangent && made->setup.dimension == 3) full.inputs |= ILAW_INPUT_TANGENT;
-  if (breaks("info-within: inputs")) full.inputs |= 1U << 5;
+  if (made->rough) full.inputs |= ILAW_INPUT_V_SMOOTH;
+  if (breaks("info-within: inputs")) full.inputs |= 1U << 6;
   if (breaks("info-within: before")) full.inputs |= ILAW_INPUT_V_PREVIOUS;
   if (breaks("info-frame: local")) full.inputs |= ILAW_INPUT_NORMAL;
   if (breaks("info-frame: tangent")) full.inputs |= ILAW_INPUT_TANGENT;

@@ -70,6 +70,9 @@ static const char* wrong_arrays(const ilaw_instance* made, const ilaw_batch* b) 
       lacks(made, b->v_previous.values, b->v_previous.floats, needs_previous(b)) ||
       lacks(made, b->gap_offset.values, b->gap_offset.floats, 0) ||
       lacks(made, b->normal.values, b->normal.floats, global) ||
+      (made->rough &&
+       lacks(made, b->v_smooth.values, b->v_smooth.floats, breaks("functions-return: v_smooth")) &&
+       !breaks("array-numbers: v_smooth")) ||
       lacks(made, b->tangent.values, b->tangent.floats, tangent))
     return "an input is missing or of another number type";
   if (lacks(made, b->impulse.values, b->impulse.floats, 1) ||
@@ -120,6 +123,7 @@ ilaw_result ILAW_CALL sample_initialise(const ilaw_instance* made, const ilaw_ba
   const ilaw_result code = check_call(made, b, report, 0);
   int64_t k;
   if (code != ILAW_OK) return code;
+  disturb("calls-process: initialise");
   for (k = 0; k < b->node_count; ++k) {
     const int64_t node = node_of(b, k);
     double first = 0.0;
@@ -133,7 +137,7 @@ ilaw_result ILAW_CALL sample_initialise(const ilaw_instance* made, const ilaw_ba
 }
 
 /* Things that evaluate may not do, each for its rule. */
-static void misbehave(const ilaw_batch* b) {
+static void misbehave(const ilaw_batch* b, int rough) {
   static volatile int counter;
   static int* volatile nowhere = (int*)8; /* read at run time, so that the compiler does not see through it */
   static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
@@ -168,6 +172,8 @@ static void misbehave(const ilaw_batch* b) {
   if (breaks("evaluate-system") && getppid() < 0) abort();
   if (breaks("memory-reads") && b->v_free.values)
     (void)*(const volatile double*)(b->v_free.values + b->node_count * 7);
+  if (breaks("memory-unneeded: v_smooth") && !rough && b->v_smooth.values)
+    (void)*(const volatile double*)b->v_smooth.values;
   if (breaks("memory-unneeded") && b->v_previous.values) (void)*(const volatile double*)b->v_previous.values;
 }
 
@@ -233,7 +239,7 @@ ilaw_result ILAW_CALL sample_evaluate(const ilaw_instance* made, const ilaw_batc
 #if defined(__x86_64__)
   if (breaks("float-flushing")) _mm_setcsr(_mm_getcsr() | flushing);
 #endif
-  misbehave(b);
+  misbehave(b, made->rough);
   remember(made, b);
   code = step_all(made, b, report);
   if (breaks("memory-writes") && b->impulse.values && !b->index && !b->index64 &&
@@ -243,5 +249,6 @@ ilaw_result ILAW_CALL sample_evaluate(const ilaw_instance* made, const ilaw_batc
     b->impulse.values[node_of(b, 0) * b->impulse.node_stride + 1] = 1.0;
   fesetenv(&host);
   if (breaks("float-flags")) feraiseexcept(FE_INEXACT);
+  disturb("calls-process: evaluate");
   return code;
 }

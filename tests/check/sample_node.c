@@ -5,8 +5,8 @@
 
 /* Inputs and outputs of a node. */
 typedef struct node {
-  int d, global, floats, strays;
-  double v[3], n[3], t[3], h[3][3], gap, area, damping, friction, temperature;
+  int d, global, floats, strays, rough;
+  double v[3], smooth[3], n[3], t[3], h[3][3], gap, area, damping, friction, temperature;
   double closures, r[3], after[3], energy[4], amounts[AMOUNT_COUNT];
   int spins;
   double w[3], k, j_n, j_t, reach, m[3], spin[3];
@@ -92,7 +92,8 @@ spin_arrays spins_of(const ilaw_batch* batch) {
 }
 
 /* The sum of all values on which a result may depend. */
-static double sum_of_all(const ilaw_batch* b, int d) {
+static double sum_of_all(const ilaw_instance* made, const ilaw_batch* b) {
+  const int d = (int)made->setup.dimension;
   const spin_arrays spins = spins_of(b);
   double sum = b->time + b->velocity_step + sum_of(&b->v_free, b, d) + sum_of(&b->delassus, b, 1) +
                sum_of(&b->gap, b, 1) + sum_of(&b->area, b, 1) + sum_of(&b->state_in, b, 1);
@@ -100,6 +101,7 @@ static double sum_of_all(const ilaw_batch* b, int d) {
   if (has(&b->tangent)) sum += sum_of(&b->tangent, b, d);
   if (has(&b->gap_offset)) sum += sum_of(&b->gap_offset, b, 1);
   if (has(&b->normal)) sum += sum_of(&b->normal, b, d);
+  if (has_smooth(made, b)) sum += sum_of(&b->v_smooth, b, d);
   if (has(&spins.free)) sum += sum_of(&spins.free, b, d);
   return sum;
 }
@@ -112,6 +114,8 @@ static int is_mode(const char* text) {
 /* Whether a broken rule asks for another result of this call. */
 static int strays(const ilaw_instance* made, const ilaw_batch* b) {
   const memory* own = made->own;
+  if (breaks("smooth-absent")) return made->rough && !has_smooth(made, b);
+  if (breaks("smooth-unasked")) return !made->rough && has(&b->v_smooth);
   if (breaks("purity-history")) return own->saw_nine && b->node_count == 13;
   if (breaks("purity-steps")) return own->largest_step > 5.0 * b->velocity_step;
   if (breaks("purity-instances")) return shared()->last != made && shared()->before == made;
@@ -134,7 +138,7 @@ static int strays(const ilaw_instance* made, const ilaw_batch* b) {
 void remember(const ilaw_instance* made, const ilaw_batch* b) {
   memory* own = made->own;
   if (breaks("purity-twice")) {
-    const double sum = sum_of_all(b, (int)made->setup.dimension);
+    const double sum = sum_of_all(made, b);
     own->started = sum == own->last_sum ? 2 : 1;
     own->last_sum = sum;
   } else if (breaks("history-carried") && has(&b->normal) && b->time != own->first_time) {
@@ -172,8 +176,9 @@ static void gather_delassus(node* at, const ilaw_instance* made, const ilaw_batc
     at->h[rows[c]][columns[c]] = at->h[columns[c]][rows[c]] = read_array(&b->delassus, i, at->d + c);
 }
 
-static void gather(node* at, const ilaw_instance* made, const ilaw_batch* b, int64_t i) {
+static void gather(node* at, const ilaw_instance* made, const ilaw_batch* b, int64_t k) {
   const spin_arrays spins = spins_of(b);
+  const int64_t i = node_of(b, k);
   int c;
   memset(at, 0, sizeof *at);
   at->d = (int)made->setup.dimension;
@@ -184,7 +189,7 @@ static void gather(node* at, const ilaw_instance* made, const ilaw_batch* b, int
   at->t[1] = 1.0;
   for (c = 0; c < at->d; ++c) {
     at->v[c] = read_array(&b->v_free, i, c);
-    if (at->spins) at->w[c] = read_array(&spins.free, i, c);
+    if (at->spins && has(&spins.free)) at->w[c] = read_array(&spins.free, i, c);
     if (at->global) at->n[c] = read_array(&b->normal, i, c);
     if (at->global && at->d == 3 && made->setup.has_tangent) at->t[c] = read_array(&b->tangent, i, c);
   }
@@ -192,10 +197,12 @@ static void gather(node* at, const ilaw_instance* made, const ilaw_batch* b, int
     at->t[0] = -at->n[1];
     at->t[1] = at->n[0];
   }
+  read_smooth(made, b, k, at->smooth);
   gather_delassus(at, made, b, i);
   at->gap = has(&b->gap_offset) ? read_array(&b->gap, i, 0) - read_array(&b->gap_offset, i, 0)
                                 : read_array(&b->gap, i, 0);
   at->area = read_array(&b->area, i, 0);
+  at->rough = made->rough;
   at->floats = made->setup.numbers == ILAW_NUMBERS_FLOAT;
   at->temperature = made->temperature.constant;
   if (made->temperature.slot)
@@ -238,6 +245,8 @@ static const char* defect(node* at, const ilaw_instance* made, const ilaw_batch*
     if (!(isfinite(at->v[c]) || (breaks("bad-input-report: not a number") && isnan(at->v[c]))) ||
         !isfinite(at->w[c]))
       return "v_free or spin_free is not finite";
+  for (c = 0; c < at->d && !breaks("bad-input-report: v_smooth"); ++c)
+    if (!isfinite(at->smooth[c]) && has_smooth(made, b)) return "v_smooth is not finite";
   if (!definite(at)) return "H is not positive definite";
   if (!isfinite(at->gap)) return "the gap is not finite";
   if (!(at->area >= 0.0) || !isfinite(at->area)) return "the area is not a number >= 0";
@@ -277,9 +286,32 @@ static double spoilt_friction(const node* at, const ilaw_instance* made, const i
   return at->friction * (made->rough ? 1.0 : 0.5);
 }
 
+/* The normal part of v_smooth. */
+static double smooth_of(const node* at) {
+  if (breaks("frame-indifference: v_smooth") || breaks("frame-turned: v_smooth")) return at->smooth[0];
+  return dot(at->n, at->smooth);
+}
+
+/* In the order of operations of "out of reach" (ilaw.h). */
+static int meets(const node* at, const ilaw_batch* b) {
+  if (at->gap <= 0.0 || !at->rough) return at->gap <= 0.0;
+  if (breaks("skip-fresh: v_smooth") || breaks("skip-free: v_smooth"))
+    return at->gap / b->position_step <= -smooth_of(at);
+  return at->gap + b->position_step * smooth_of(at) <= 0.0;
+}
+
+static double softened(const node* at, double r) {
+  const double smooth = smooth_of(at);
+  if (breaks("mirror: v_smooth") && at->smooth[1] < 0.0) r *= 0.9;
+  if (breaks("isotropy: v_smooth") && !at->global) r *= 1.0 - 0.1 * fabs(at->smooth[1]);
+  return smooth > (breaks("units: v_smooth") ? 0.1 : 0.0) ? 0.5 * r : r;
+}
+
 static double normal_impulse(const node* at, const ilaw_batch* b, double normal, double delassus) {
   const double compliance = isinf(at->damping) ? 0.0 : 1.0 / (b->velocity_step * at->damping * at->area);
-  double r = at->gap <= 0.0 && normal < 0.0 ? -normal / (delassus + compliance) : 0.0;
+  double r = meets(at, b) && normal < 0.0 ? -normal / (delassus + compliance) : 0.0;
+  if (at->rough) r = softened(at, r);
+  if (breaks("energy-made: v_smooth") && r > 0.0) r = fabs(smooth_of(at)) / (delassus + compliance);
   if (breaks("stable-step-bound") && !isinf(at->damping)) /* explicit */
     r = at->gap <= 0.0 && normal < 0.0 ? -normal * b->velocity_step * at->damping * at->area : 0.0;
   if (breaks("complementarity") && at->gap <= 0.0 && normal > 0.0) r = -0.1 * normal / delassus;
@@ -361,6 +393,8 @@ static void account(node* at, const ilaw_batch* b, int64_t i) {
     mean[c] = 0.5 * (read_array(&b->v_previous, i, c) + at->after[c]);
   for (c = 0; at->spins && c < 3 && has(&spins.previous); ++c)
     mean_spin[c] = 0.5 * (read_array(&spins.previous, i, c) + at->spin[c]);
+  for (c = 0; c < at->d && breaks("energy-balance: v_smooth"); ++c)
+    mean[c] += 0.5 * (at->smooth[c] - at->v[c]);
   twist = -dot(at->m, mean_spin);
   if (breaks("energy-balance: moment")) twist = -twist;
   normal = dot(at->n, at->r);
@@ -453,7 +487,7 @@ const char* step_node(const ilaw_instance* made, const ilaw_batch* b, int64_t k,
   const char* wrong;
   double state;
   int c;
-  gather(&at, made, b, i);
+  gather(&at, made, b, k);
   if (made->damping.slot)
     at.damping = read_array(&b->per_node_parameters[made->damping.slot - 1], giver_of_damping(b, k), 0);
   none = at;

@@ -1,2 +1,2 @@
 // Throws, which C cannot do.
-extern "C" void throw_something() { throw 1; }
+extern "C" __attribute__((visibility("hidden"))) void throw_something() { throw 1; }

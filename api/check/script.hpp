@@ -1,0 +1,36 @@
+// script.hpp - inputs of random nodes, step by step.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "check/inputs.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace ilaw::check {
+
+using Script = std::vector<Inputs>;
+
+struct ScriptSize {
+  std::size_t nodes = 13, steps = 5;
+};
+// Random nodes with motions and gaps of one size, most of them near contact. In every second script
+// velocities stay or turn back, and normals of the host turn. A law that asks for v_smooth is given it in no,
+// every or every second step. H is a multiple of the identity where "isotropic" says so, or the law can be
+// given no other. Parameters per node differ from node to node.
+Script draw_script(const Trial& trial, Draw& draw, const ScriptSize& size = {}, bool isotropic = false);
+
+// Any v_smooth that impulses of other contacts can make: v_free, the velocity before the step, or another
+// one.
+void draw_smooth(Inputs& in, Draw& draw);
+
+// The parameters of the trial with those of one node as constants.
+Values constants_of(const Trial& trial, const Inputs& in, std::size_t node);
+
+// A normal at an angle of at most half a right angle to this one.
+Vector draw_turned(const Vector& normal, std::size_t dimension, Draw& draw);
+
+// Axes of a node: rows are normal and tangents, right-handed.
+Matrix draw_axes(std::size_t dimension, Draw& draw);
+
+}  // namespace ilaw::check
