@@ -114,7 +114,7 @@ TEST(NodeToFacet, GapIsContinuousAcrossFacetsAndOpenBeyondTheBorder) {
       u[3 * node] = x;
       u[3 * node + 1] = 0.5 * x;
       u[3 * node + 2] = -0.1 + z;
-      interface.setup().counterpart->refresh(u);
+      interface.setup().counterpart->follow(u);
       const ContactPoint contact_point = counterpart.contact_point(0, u, 0.0);
       EXPECT_NEAR(contact_point.gap, z, 1e-15) << x;
       EXPECT_NEAR(contact_point.normal[2], 1.0, 1e-15) << "x " << x;
@@ -129,7 +129,7 @@ TEST(NodeToFacet, GapIsContinuousAcrossFacetsAndOpenBeyondTheBorder) {
       EXPECT_LE(counterpart.gap_bound(0, u, 0.0), contact_point.gap) << "x " << x;
     }
   u[3 * node] = -0.5;  // 0.2 beyond the border, and below the surface
-  interface.setup().counterpart->refresh(u);
+  interface.setup().counterpart->follow(u);
   EXPECT_GT(counterpart.contact_point(0, u, 0.0).gap, 0.2);
 }
 

@@ -15,13 +15,21 @@ namespace {
 // rest on a spring have them, at gaps as small.
 constexpr double least_speed = 0x1p-500;
 
+double largest_offset_of(const InterfaceSetup& setup) {
+  double largest = std::max(0.0, setup.common_gap_offset);
+  for (const double own : setup.own_gap_offsets) largest = std::max(largest, setup.common_gap_offset + own);
+  return largest;
+}
+
 }  // namespace
 
 ContactSearch::ContactSearch(const InterfaceSetup& setup, const Law& law, const ContactArrays& contacts)
     : setup_(setup),
       law_(law),
       contacts_(contacts),
-      axes_turn_(!law.axes().empty() && !setup.counterpart->keeps_normal()) {}
+      axes_turn_(!law.axes().empty() && !setup.counterpart->keeps_normal()),
+      finds_near_(setup.counterpart->finds_near()),
+      largest_offset_(largest_offset_of(setup)) {}
 
 void ContactSearch::choose(const StepView& step, const ObstacleMotion& obstacle, const MakeContact& make) {
   const Counterpart& counterpart = *setup_.counterpart;
@@ -29,13 +37,31 @@ void ContactSearch::choose(const StepView& step, const ObstacleMotion& obstacle,
   const double closing_before = moving * std::max(step.speed_before, least_speed) + obstacle.speed_before(),
                closing_after = moving * std::max(step.speed_after, least_speed) + obstacle.speed();
   closing_ = step.dt * closing_after;
-  const bool due = proximity_.refresh_due(step.dt, closing_before, closing_after, counterpart.validity());
   const double clock = std::max(step.time, 0.0);  // before it, a run is prestressed
   acts_ = !(clock < setup_.birth || clock >= setup_.death);
-  if (!acts_)
-    proximity_.invalidate();
-  else if (due)
-    refresh(step, make);
+  if (is_due(step, closing_before, closing_after)) refresh(step, make);
+}
+
+bool ContactSearch::is_due(const StepView& step, double closing_before, double closing_after) {
+  if (!finds_near_) {
+    const bool due = proximity_.refresh_due(step.dt, closing_before, closing_after);
+    if (!acts_) proximity_.invalidate();
+    return due && acts_;
+  }
+  if (!acts_) {
+    is_forced_ = true;
+    return false;
+  }
+  const double travelled = ProximityFilter::rounded_up(step.dt * closing_before),
+               ahead = ProximityFilter::rounded_up(step.dt * closing_after);
+  const Approach approach{travelled, ahead + largest_offset_, is_forced_, near_.empty()};
+  is_forced_ = false;
+  return setup_.counterpart->find_near(step.u, approach);
+}
+
+bool ContactSearch::may_touch(double gap_bound) const {
+  if (!finds_near_) return proximity_.may_touch(gap_bound);
+  return !(gap_bound > setup_.counterpart->horizon() - largest_offset_);
 }
 
 NearContacts ContactSearch::chunk(std::ptrdiff_t number) const {
@@ -51,6 +77,7 @@ void ContactSearch::look_again(int node_index) {
 void ContactSearch::forget() {
   far_.clear();
   proximity_.invalidate();
+  is_forced_ = true;
 }
 
 bool ContactSearch::may_skip() const {
@@ -60,7 +87,6 @@ bool ContactSearch::may_skip() const {
 
 // Where all nodes of a chunk are far, it is looked at only if they may have come closer.
 void ContactSearch::refresh(const StepView& step, const MakeContact& make) {
-  setup_.counterpart->refresh(step.u);
   const auto count = static_cast<std::ptrdiff_t>(setup_.nodes.size());
   is_near_.resize(setup_.nodes.size());
   far_.resize(static_cast<std::size_t>(chunks_of(count, contact_chunk)));
@@ -106,15 +132,13 @@ void ContactSearch::look_at(std::size_t chunk, const StepView& step) {
     const bool awake = contact >= 0 ? contacts_.must_be_evaluated(static_cast<std::size_t>(contact))
                                     : !law_.may_skip_fresh();
     const double gap = skips ? bounds[i] - setup_.gap_offset(static_cast<int>(first + i)) : 0.0;
-    const bool is_near = awake || !skips || proximity_.may_touch(gap) ||
+    const bool is_near = awake || !skips || may_touch(gap) ||
                          setup_.counterpart->is_held(static_cast<int>(first + i));
     is_near_[first + i] = is_near ? 1 : 0;
     near += is_near ? 1 : 0;
     least = gap < least ? gap : least;
   }
-  far_[chunk] = near > 0 || setup_.counterpart->validity() < std::numeric_limits<double>::infinity()
-                    ? FarNodes{}
-                    : FarNodes{least, proximity_.way()};
+  far_[chunk] = near > 0 || finds_near_ ? FarNodes{} : FarNodes{least, proximity_.way()};
 }
 
 }  // namespace ilaw::host

@@ -1,5 +1,5 @@
 // contact_search.hpp - which contacts of an interface a step works on: those that are near
-// (proximity_filter.hpp) or remember something.
+// (proximity_filter.hpp; mesh_surface.hpp) or remember something.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -58,6 +58,8 @@ class ContactSearch {
 
  private:
   bool may_skip() const;
+  bool is_due(const StepView& step, double closing_before, double closing_after);
+  bool may_touch(double gap_bound) const;
   void refresh(const StepView& step, const MakeContact& make);
   void look_at(std::size_t chunk, const StepView& step);
 
@@ -65,7 +67,10 @@ class ContactSearch {
   const Law& law_;
   const ContactArrays& contacts_;
   const bool axes_turn_;
+  const bool finds_near_;       // the counterpart does, instead of the filter
+  const double largest_offset_;  // of gaps
   ProximityFilter proximity_;
+  bool is_forced_ = true;  // the list of the counterpart must be new
   double closing_ = 0.0;
   bool acts_ = false;              // between birth and death
   ContactList near_, near_nodes_;  // contacts, and the nodes that they are of

@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <iosfwd>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -81,6 +80,14 @@ void flat_gaps(const Model& model, const std::int32_t* nodes, std::ptrdiff_t cou
   }
 }
 
+// What a surface is asked for in a step: the nodes that may come within reach.
+struct Approach {
+  double travelled;  // how far nodes and surface may have approached since the last step, at most
+  double reach;      // the gap up to which nodes must be found
+  bool is_forced;    // although the last list may be complete
+  bool is_idle;      // no contact is asked for its gap before there is a new list
+};
+
 class Counterpart {
  public:
   virtual ~Counterpart() = default;
@@ -95,10 +102,13 @@ class Counterpart {
   }
   // The same of count nodes from the first on; several threads may ask at once.
   virtual void gap_bounds(int first, int count, const Dofs& u, double time, double* bounds) const;
-  // Called before the gap bounds of all nodes are taken anew.
-  virtual void refresh(const Dofs& /*u*/) {}
-  // How far nodes and counterpart may approach before the next refresh.
-  virtual double validity() const { return std::numeric_limits<double>::infinity(); }
+  // Takes the displacements that contact points and gap bounds are asked for from here on.
+  virtual void follow(const Dofs& /*u*/) {}
+  // A surface that finds the nodes near it by itself (proximity_filter.hpp does it for the others): whether its
+  // list is a new one, and the gap bound up to which nodes are in it.
+  virtual bool finds_near() const { return false; }
+  virtual bool find_near(const Dofs& /*u*/, const Approach& /*approach*/) { return true; }
+  virtual double horizon() const { return 0.0; }
 
   // Null where the nodes meet another body.
   virtual const Obstacle* obstacle() const { return nullptr; }

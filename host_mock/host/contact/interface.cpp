@@ -165,6 +165,7 @@ bool Interface::is_active(int contact_index) const {
 
 bool Interface::has_lost_a_node(const Dofs& u, double time) const {
   constexpr double rounding = 1e-6;
+  setup_.counterpart->follow(u);
   for (std::size_t k = 0; k < setup_.nodes.size(); ++k) {
     const ContactPoint point = setup_.counterpart->contact_point(static_cast<int>(k), u, time);
     const double length = point.normal.norm();

@@ -27,18 +27,19 @@ struct FarNodes {
 class ProximityFilter {
  public:
   // Whether the near contacts must be found anew. Speeds bound the closing speeds of the step that
-  // led here and of the coming one; validity bounds the horizon, but for the coming step itself.
-  bool refresh_due(double dt, double speed_before, double speed_after, double validity) {
+  // led here and of the coming one.
+  bool refresh_due(double dt, double speed_before, double speed_after) {
     approached_ += rounding * dt * speed_before;
     way_ += rounding * dt * speed_before;
     const double ahead = rounding * dt * speed_after;
-    if (valid_ && approached_ + ahead < horizon_ && approached_ <= validity) return false;
+    if (valid_ && approached_ + ahead < horizon_) return false;
     approached_ = 0.0;
-    horizon_ = std::min(steps_ahead * dt * speed_before, validity);
-    horizon_ = std::max(horizon_, 2.0 * ahead);  // never shorter than the step itself
+    horizon_ = std::max(steps_ahead * dt * speed_before, 2.0 * ahead);  // never shorter than the step itself
     valid_ = true;
     return true;
   }
+  // An upper bound of a distance that is computed in a few operations.
+  static double rounded_up(double distance) { return rounding * distance; }
   // Whether a contact may touch before the next refresh.
   bool may_touch(double gap_bound) const { return !(gap_bound > horizon_); }
   // How far nodes and counterpart have approached since the start, at most. Half of a bound is kept

@@ -147,6 +147,7 @@ void add_interface(vtkUnstructuredGrid& grid, const Interface& interface, const 
   status->FillValue(-1);
   grid.GetPointData()->AddArray(status);
   const std::vector<StateArray> states = add_states(grid, interface.info(), prefix, node_count);
+  interface.setup().counterpart->follow(integrator.displacement());
   for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
     const int node = interface.nodes()[k], node_index = static_cast<int>(k);
     gap->SetValue(node, interface.gap_at(node_index, integrator.displacement(), integrator.time()));

@@ -121,6 +121,7 @@ void History::add_node(std::size_t watched, const Integrator& integrator, const 
     table_ << integrator.temperatures()->at(scene_.output.watch[watched]);
   for (const Contact& contact : contacts_[watched]) {
     const Interface& interface = *contact.interface;
+    interface.setup().counterpart->follow(integrator.displacement());
     const int contact_index = interface.contact_at(contact.node_index);
     const int status = interface.is_active(contact_index) ? interface.status(contact_index) : int{ILAW_FREE};
     table_ << interface.gap_at(contact.node_index, integrator.displacement(), integrator.time()) << status;

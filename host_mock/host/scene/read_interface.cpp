@@ -104,6 +104,7 @@ void read_gap_offset(const json& interface, InterfaceSetup& setup, const Scene& 
     return;
   }
   const Dofs& u = scene.model->initial_displacement();
+  setup.counterpart->follow(u);
   for (std::size_t k = 0; k < setup.nodes.size(); ++k)
     setup.own_gap_offsets.push_back(
         setup.counterpart->contact_point(static_cast<int>(k), u, scene.start_time()).gap);

@@ -64,6 +64,7 @@ struct StartGaps {
 StartGaps gaps_at_start(const Scene& scene, const Interface& interface, double low, double high) {
   StartGaps found;
   const Dofs& start = scene.model->initial_displacement();
+  interface.setup().counterpart->follow(start);
   for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
     const double gap = interface.gap_at(static_cast<int>(k), start, scene.start_time());
     const int node = interface.nodes()[k];
