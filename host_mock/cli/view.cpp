@@ -32,7 +32,7 @@ void add_view(CLI::App& app, int& code) {
   command
       ->add_option("--megabytes", options->megabytes,
                    "About the most that the data take: first frames are left out, then nodes")
-      ->check(number_from(0.1, 2000.0))
+      ->check(number_from(0.01, 2000.0))
       ->capture_default_str();
   command->footer(
       "The file opens in any browser and needs no network.\n"

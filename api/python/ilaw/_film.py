@@ -58,6 +58,9 @@ class Channel:
             self.least, self.most = min(self.least, columns[known].min()), max(self.most, columns[known].max())
             self.peaks.append(float(np.abs(columns[known]).max()))
 
+    def size(self) -> int:
+        return len(self.bytes) + len(self.packer.copy().flush())
+
     def finish(self, blocks: Blocks) -> dict[str, Any]:
         low, step = (blocks.add(np.array(values), "<f8") for values in (self.low, self.step))
         return {**blocks.add_packed(self.bytes + self.packer.flush(), "<u2"), "low": low, "step": step}
@@ -188,9 +191,8 @@ class InterfaceFields:
         free = found["status"] == FREE
         traction = np.where(free[:, None], np.nan, grid.nodes[self.prefix + "traction"][self.nodes])
         pressure = (traction * normal).sum(axis=1)
-        if np.isfinite(pressure).any():
-            found["pressure"] = pressure
-            found["shear traction"] = np.linalg.norm(traction - pressure[:, None] * normal, axis=1)
+        found["pressure"] = pressure  # in every frame, also if nothing touches
+        found["shear traction"] = np.linalg.norm(traction - pressure[:, None] * normal, axis=1)
         if obstacle and not obstacle["turns"]:
             v = grid.nodes["v"][self.nodes] - speed
             slip = np.linalg.norm(v - (v * normal).sum(axis=1)[:, None] * normal, axis=1)
@@ -277,7 +279,7 @@ class Film:
 
     def size(self) -> int:
         """Bytes so far, before they are written as text."""
-        return sum(len(channel.bytes) for channel in (self.u, *(c for c, _ in self.fields.values())))
+        return sum(channel.size() for channel in (self.u, *(c for c, _ in self.fields.values())))
 
     def finish(self, blocks: Blocks, points: np.ndarray) -> dict[str, Any]:
         fields = []
@@ -353,9 +355,9 @@ def film_of_fields(run: Run, blocks: Blocks, megabytes: float, notes: list[str])
             share = allowed / (per_frame * len(chosen))
             before = len(surface.nodes)
             surface = thinned(surface, first.points, run.bodies(), share)
-            notes.append(f"{len(surface.nodes)} of {before} surface nodes are drawn; --megabytes allows more.")
+            notes.append(f"{len(surface.nodes)} of {before} surface nodes are drawn: a larger --megabytes draws more.")
         if len(chosen) < len(files):
-            notes.append(f"{len(chosen)} of {len(files)} fields in time are shown; --megabytes allows more.")
+            notes.append(f"{len(chosen)} of {len(files)} frames are shown: a larger --megabytes shows more.")
     else:
         chosen = list(range(len(files)))
     made = film(chosen, surface)

@@ -251,13 +251,14 @@ function moveForces() {
   const unit = 0.13 * model.viewSize * Math.pow(10, Number($("arrowSize").value) / 2) / force.part.typical;
   const to = new THREE.Vector3(), place = new THREE.Vector3(), up = new THREE.Vector3(0, 1, 0), turn = new THREE.Quaternion();
   const size = new THREE.Vector3(), matrix = new THREE.Matrix4();
+  const slender = Math.min(1, Math.sqrt(150 / force.part.count)) * 0.5 + 0.5;
   let shown = 0;
   for (let k = 0; k < force.part.count; ++k) {
     to.fromArray(force.now, 3 * k);
     const f = to.length(), length = Math.min(f * unit, model.viewSize);
     if (!(f > 1e-3 * force.part.typical)) continue;
     turn.setFromUnitVectors(up, to.divideScalar(f));
-    const width = Math.min(length, 0.1 * model.viewSize);
+    const width = Math.min(length, 0.1 * model.viewSize) * slender;
     place.fromArray(model.place.array, 3 * force.nodes[k]).y += run.film.lift || 0;
     matrix.compose(place, turn, size.set(width, length, width));
     force.mesh.setMatrixAt(shown++, matrix);
@@ -438,8 +439,11 @@ function drawBar() {
     if (field.least < state.low - 1e-6 * Math.abs(state.low)) ticks.lastChild.textContent = "≤ " + number(state.low);
     make("div", bar, `all times: ${number(field.least)} to ${number(field.most)}`).style.fontSize = "11px";
   }
+  if (!field.interface || run.film.isPoints) return;
   const row = make("div", bar);
-  if (field.nodes || field.interface) make("span", row, undefined, "chip").style.background = BODY_COLORS[0], row.append("no value"), row.style.fontSize = "11px";
+  row.style.fontSize = "11px";
+  make("span", row, undefined, "chip").style.background = BODY_COLORS[0];
+  row.append(/pressure|shear|slip/.test(field.name) ? "free, or not in it" : "not in the interface");
 }
 
 // --- time ------------------------------------------------------------------------------------------------------------
