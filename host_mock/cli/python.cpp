@@ -64,8 +64,8 @@ int run_python(const std::string& module, const std::vector<std::string>& argume
   const std::vector<std::string> environment = environment_with(package);
   std::fflush(nullptr);
   for (const std::string python : {"python3", "/usr/bin/python3"}) {
-    if (run_program({python, "-c", "import " + imports}, environment, true) != exit_done) continue;
-    std::vector<std::string> words = {python, "-m", module};
+    if (run_program({python, "-B", "-c", "import " + imports}, environment, true) != exit_done) continue;
+    std::vector<std::string> words = {python, "-B", "-m", module};
     words.insert(words.end(), arguments.begin(), arguments.end());
     return run_program(words, environment, false);
   }

@@ -13,10 +13,10 @@ from pathlib import Path
 
 # The network is a name that does not resolve, and WebGL is computed in software.
 OPTIONS = [
-    "--headless", "--no-sandbox", "--disable-dev-shm-usage", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-    "--host-resolver-rules=MAP * ~NOTFOUND", "--disable-background-networking", "--disable-component-update", "--disable-sync",
-    "--disable-default-apps", "--no-first-run", "--no-default-browser-check", "--metrics-recording-only", "--remote-debugging-pipe",
-    "--hide-scrollbars", "--mute-audio",
+    "--headless", "--no-sandbox", "--disable-dev-shm-usage", "--use-gl=angle", "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader", "--host-resolver-rules=MAP * ~NOTFOUND", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync", "--disable-default-apps", "--no-first-run",
+    "--no-default-browser-check", "--metrics-recording-only", "--remote-debugging-pipe", "--hide-scrollbars",
 ]  # fmt: skip
 
 
@@ -38,9 +38,8 @@ class Browser:
             os.dup2(low, 3), os.dup2(high, 4)
 
         options = [*OPTIONS, f"--user-data-dir={self.profile}", f"--window-size={width},{height}", "about:blank"]
-        self.process = subprocess.Popen(
-            [find(), *options], preexec_fn=connect, close_fds=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-        )
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        self.process = subprocess.Popen([find(), *options], preexec_fn=connect, close_fds=False, **quiet)
         os.close(to_browser), os.close(from_browser)
         self.commands, self.answers, self.rest, self.number = commands, answers, b"", 0
         self.complaints, self.addresses = [], []

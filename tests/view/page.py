@@ -16,27 +16,31 @@ RUBBER = {"type": "neo_hookean", "young": 1e6, "poisson": 0.3, "density": 1000}
 
 
 def box(name, corner, velocity, size=(0.1, 0.1, 0.05), elements=(4, 4, 2)):
-    return {"name": name, "corner": corner, "size": size, "elements": elements, "velocity": velocity, "material": RUBBER}
+    shape = {"corner": corner, "size": size, "elements": elements}
+    return {"name": name, **shape, "velocity": velocity, "material": RUBBER}
 
 
 # Two boxes fall on each other and on a floor; rows and frames are of the same steps.
 TWO_BOXES = {
     "title": "Two boxes </script><script>fail()</script>",
-    "model": {"type": "blocks", "blocks": [box("lower", [0, 0, 0.001], [0, 0, -1]),
-                                           box("upper", [0.02, 0.02, 0.0525], [0.3, 0, -2], (0.05, 0.05, 0.05), (3, 3, 3))]},
+    "model": {"type": "blocks", "blocks": [
+        box("lower", [0, 0, 0.001], [0, 0, -1]),
+        box("upper", [0.02, 0.02, 0.0525], [0.3, 0, -2], (0.05, 0.05, 0.05), (3, 3, 3))]},
     "time": {"cfl": 0.7, "end": 0.02},
     "interfaces": [
         {"name": "floor", "law": "coulomb", "parameters": {"friction": 0.3}, "nodes": "lower.z_min",
          "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}},
         {"name": "between", "law": "coulomb", "parameters": {"friction": 0.5}, "nodes": "upper.z_min",
          "against": {"surface": "lower.z_max"}}],
-    "output": {"every": 1, "fields": 1, "watch": ["upper.z_min"], "forces": ["floor", "between"], "balance": True, "events": True},
+    "output": {"every": 1, "fields": 1, "watch": ["upper.z_min"], "forces": ["floor", "between"],
+               "balance": True, "events": True},
 }  # fmt: skip
 
 
 def points(dimension, masses, interfaces, **more):
-    scene = {"model": {"type": "points", "dimension": dimension, "points": masses}, "time": {"dt": 1e-3, "end": 0.5},
-             "interfaces": interfaces, "output": {"watch": [0]}}  # fmt: skip
+    model = {"type": "points", "dimension": dimension, "points": masses}
+    time = {"dt": 1e-3, "end": 0.5}
+    scene = {"model": model, "time": time, "interfaces": interfaces, "output": {"watch": [0]}}
     return {**scene, **more}
 
 

@@ -87,9 +87,10 @@ def test_curves_keep_their_peaks(boxes):
 
 
 def test_peaks_of_long_histories_stay(tmp_path):
-    scene = points(1, [{"mass": 1, "position": [0.1], "velocity": [-1]}],
-                   [{"law": "contact", "parameters": {"restitution": 1}, "nodes": "all", "obstacle": {"type": "plane", "point": [0], "normal": [1]}}],
-                   time={"dt": 1e-5, "end": 0.2})  # fmt: skip
+    wall = {"type": "plane", "point": [0], "normal": [1]}
+    bounce = {"law": "contact", "parameters": {"restitution": 1}, "nodes": "all", "obstacle": wall}
+    mass = {"mass": 1, "position": [0.1], "velocity": [-1]}
+    scene = points(1, [mass], [bounce], time={"dt": 1e-5, "end": 0.2})
     results = run(scene, tmp_path)
     assert view(results).returncode == 0
     page = Page(results / "view.html")
@@ -135,8 +136,11 @@ def test_obstacles_are_where_the_host_has_them(tmp_path, motion, shape):
     if "tilt" in motion and shape != "plane":
         return
     obstacle = {"type": shape, **motion}
-    obstacle |= {"plane": {"point": [0, 0, -0.1], "normal": [0.1, 0, 1]}, "sphere": {"center": [0, 0, -0.5], "radius": 0.3},
-                 "cylinder": {"point": [0, 0, -0.5], "axis": [0.2, 1, 0], "radius": 0.3}}[shape]  # fmt: skip
+    obstacle |= {
+        "plane": {"point": [0, 0, -0.1], "normal": [0.1, 0, 1]},
+        "sphere": {"center": [0, 0, -0.5], "radius": 0.3},
+        "cylinder": {"point": [0, 0, -0.5], "axis": [0.2, 1, 0], "radius": 0.3},
+    }[shape]
     scene = {"model": {"type": "blocks", "blocks": [box("b", [0, 0, 0], [0, 0, 0], elements=(1, 1, 1))]},
              "time": {"dt": 1e-4, "end": 0.01}, "output": {"fields": 10},
              "interfaces": [{"name": "o", "law": "contact", "nodes": "b", "obstacle": obstacle}]}  # fmt: skip

@@ -27,7 +27,8 @@ class Blocks:
 
     def add(self, array: np.ndarray, kind: str) -> dict[str, Any]:
         packer = zlib.compressobj(6, wbits=31)
-        return self.add_packed(packer.compress(np.ascontiguousarray(array).astype(kind).tobytes()) + packer.flush(), kind)
+        packed = packer.compress(np.ascontiguousarray(array).astype(kind).tobytes())
+        return self.add_packed(packed + packer.flush(), kind)
 
     def add_packed(self, packed: bytes, kind: str) -> dict[str, Any]:
         self.texts.append(base64.b64encode(packed).decode("ascii"))
@@ -155,10 +156,8 @@ class InterfaceFields:
         several = len(run.interfaces) > 1
         self.prefix = self.interface["name"] + "." if several else ""
         self.nodes = np.flatnonzero(grid.nodes[self.prefix + "status"] >= 0)
-        self.names = [
-            name for name in grid.nodes
-            if name.startswith(self.prefix) and name not in ("u", "v", "r", "temperature") and (several or "." not in name)
-        ]  # fmt: skip
+        names = set(grid.nodes) - {"u", "v", "r", "temperature"}
+        self.names = sorted(name for name in names if name.startswith(self.prefix))
         own = np.zeros(len(grid.points), bool)
         own[self.nodes] = True
         corners = surface.nodes[surface.triangles]
@@ -180,7 +179,9 @@ class InterfaceFields:
         length = np.linalg.norm(arm, axis=1, keepdims=True)
         return np.divide(arm, length, out=np.full_like(arm, np.nan), where=length > 0)
 
-    def values(self, grid: Grid, obstacle: Optional[dict[str, Any]], frame: int, speed: np.ndarray) -> dict[str, np.ndarray]:
+    def values(
+        self, grid: Grid, obstacle: Optional[dict[str, Any]], frame: int, speed: np.ndarray
+    ) -> dict[str, np.ndarray]:
         """speed: velocity of the obstacle without its turning."""
         found = {}
         for name in self.names:
@@ -224,11 +225,49 @@ LABELS = {  # label, quantity of its unit
 }  # fmt: skip
 
 
+def field_entry(
+    run: Run, blocks: Blocks, key: tuple[str, str], channel: Channel, nodes: Optional[dict[str, Any]]
+) -> dict[str, Any]:
+    """A field as the page has it; its key is its name and that of its interface."""
+    label, quantity = LABELS.get(key[0], (key[0].replace("_", " "), ""))
+    return {
+        "name": key[0],
+        "label": label,
+        "interface": key[1],
+        "unit": run.unit_of(quantity) if quantity else "",
+        "least": float(channel.least),
+        "most": float(channel.most),
+        "peaks": float(np.percentile(channel.peaks, 90)),
+        "nodes": nodes,
+        "values": channel.finish(blocks),
+    }
+
+
+def forces_entry(run: Run, blocks: Blocks, drawn: np.ndarray, frames: np.ndarray) -> Optional[dict[str, Any]]:
+    """Arrows at the nodes that are pushed in any frame; frames has a vector per frame and node."""
+    used = np.flatnonzero(np.abs(frames).max(axis=(0, 2), initial=0.0) > 0.0) if frames.size else []
+    if not len(used):
+        return None
+    channel = Channel()
+    for frame in frames[:, used]:
+        channel.add(frame)
+    sizes = np.linalg.norm(frames[:, used], axis=2)
+    return {
+        "nodes": blocks.add(drawn[used], "<i4"),
+        "count": len(used),
+        "values": channel.finish(blocks),
+        "most": float(sizes.max()),
+        "typical": float(np.percentile(sizes.max(axis=1), 75)) or float(sizes.max()),
+        "unit": run.unit_of("force"),
+    }
+
+
 class Film:
     """Frames of all fields, added one by one."""
 
-    def __init__(self, run: Run, first: Grid, surface: Surface, obstacles: list[dict[str, Any]], times: list[float]) -> None:
-        self.run, self.surface, self.times, self.obstacles = run, surface, times, obstacles
+    def __init__(self, run: Run, first: Grid, surface: Surface, times: list[float]) -> None:
+        self.run, self.surface, self.times = run, surface, times
+        self.obstacles = {o["interface"]: o for o in run.obstacles(np.array(times))}
         self.u, self.fields, self.forces = Channel(), {}, Channel()
         self.interfaces = [InterfaceFields(run, first, k, surface) for k in range(len(run.interfaces))]
         of_interfaces = np.unique(np.concatenate([[], *(i.nodes for i in self.interfaces)]).astype(int))
@@ -260,8 +299,7 @@ class Film:
         together: dict[str, np.ndarray] = {}
         for fields in self.interfaces:
             name = fields.interface["name"]
-            obstacle = next((o for o in self.obstacles if o["interface"] == name), None)
-            speed = self.speed_of(obstacle, frame)
+            obstacle, speed = self.obstacles.get(name), self.speed_of(name, frame)
             for key, values in fields.values(grid, obstacle, frame, speed).items():
                 self.add_field(key, fields.nodes, values, name)
                 if len(self.interfaces) > 1 and key in ("pressure", "status"):
@@ -270,12 +308,13 @@ class Film:
         for key, whole in together.items():
             self.add_field(key, None, whole, "all interfaces")
 
-    def speed_of(self, obstacle: Optional[dict[str, Any]], frame: int) -> np.ndarray:
-        if not obstacle:
-            return np.zeros(3)
+    def speed_of(self, interface: str, frame: int) -> np.ndarray:
+        """Velocity of an obstacle over the last step; it is 0 without one."""
         step, time = self.run.summary["dt"], self.times[frame]
-        places = [o["place"] for o in self.run.obstacles(np.array([time - step, time])) if o["interface"] == obstacle["interface"]]
-        return (np.array(places[0][1]) - places[0][0]) / step
+        for obstacle in self.run.obstacles(np.array([time - step, time])):
+            if obstacle["interface"] == interface:
+                return (np.array(obstacle["place"][1]) - obstacle["place"][0]) / step
+        return np.zeros(3)
 
     def size(self) -> int:
         """Bytes so far, before they are written as text."""
@@ -284,38 +323,24 @@ class Film:
     def finish(self, blocks: Blocks, points: np.ndarray) -> dict[str, Any]:
         fields = []
         for (name, interface), (channel, drawn) in self.fields.items():
-            if channel.least > channel.most or (channel.least == channel.most == 0.0 and name not in ("status", "pressure")):
-                continue
-            label, quantity = LABELS.get(name, (name.replace("_", " "), ""))
-            shown_on = None if drawn is None else blocks.add(drawn[drawn >= 0], "<i4")
-            fields.append(
-                {"name": name, "label": label, "interface": interface, "unit": self.run.unit_of(quantity) if quantity else "",
-                 "least": float(channel.least), "most": float(channel.most), "peaks": float(np.percentile(channel.peaks, 90)),
-                 "nodes": shown_on, "values": channel.finish(blocks)}
-            )  # fmt: skip
+            is_zero = channel.least == channel.most == 0.0 and name not in ("status", "pressure")
+            if channel.least <= channel.most and not is_zero:
+                shown_on = None if drawn is None else blocks.add(drawn[drawn >= 0], "<i4")
+                fields.append(field_entry(self.run, blocks, (name, interface), channel, shown_on))
         first = ("status", *SHOWN_FIRST) if self.surface.is_points else SHOWN_FIRST
         order = {name: k for k, name in reversed(list(enumerate(first)))}
         fields.sort(key=lambda f: (order.get(f["name"], len(order) - 1.5), f["interface"] != "all interfaces"))
         return {
-            "nodes": len(self.surface.nodes), "points": blocks.add(points[self.surface.nodes] + self.surface.offset, "<f4"),
-            "u": self.u.finish(blocks), "bodies": self.bodies(blocks), "isPoints": self.surface.is_points, "fields": fields,
-            "forces": self.finish_forces(blocks), "modelNodes": blocks.add(self.surface.nodes, "<i4"),
+            "nodes": len(self.surface.nodes),
+            "points": blocks.add(points[self.surface.nodes] + self.surface.offset, "<f4"),
+            "modelNodes": blocks.add(self.surface.nodes, "<i4"),
+            "isPoints": self.surface.is_points,
+            "u": self.u.finish(blocks),
+            "bodies": self.bodies(blocks),
+            "fields": fields,
+            "forces": forces_entry(self.run, blocks, self.drawn[self.pushed], np.array(self.force_frames)),
             "lift": -float(self.surface.offset[:, 1].min(initial=0.0)),
-        }  # fmt: skip
-
-    def finish_forces(self, blocks: Blocks) -> Optional[dict[str, Any]]:
-        """Of the nodes that are pushed in any frame."""
-        frames = np.array(self.force_frames)
-        used = np.flatnonzero(np.abs(frames).max(axis=(0, 2), initial=0.0) > 0.0) if frames.size else []
-        if not len(used):
-            return None
-        channel = Channel()
-        for frame in frames[:, used]:
-            channel.add(frame)
-        sizes = np.linalg.norm(frames[:, used], axis=2)
-        typical = float(np.percentile(sizes.max(axis=1), 75)) or float(sizes.max())
-        return {"nodes": blocks.add(self.drawn[self.pushed[used]], "<i4"), "count": len(used), "values": channel.finish(blocks),
-                "most": float(sizes.max()), "typical": typical, "unit": self.run.unit_of("force")}  # fmt: skip
+        }
 
     def bodies(self, blocks: Blocks) -> list[dict[str, Any]]:
         found, surface = [], self.surface
@@ -342,7 +367,7 @@ def film_of_fields(run: Run, blocks: Blocks, megabytes: float, notes: list[str])
 
     def film(chosen: list[int], with_surface: Surface) -> Film:
         times = [files[k][0] for k in chosen]
-        made = Film(run, first, with_surface, run.obstacles(np.array(times)), times)
+        made = Film(run, first, with_surface, times)
         for frame, k in enumerate(chosen):
             made.add(read_grid(files[k][1]), frame)
         return made

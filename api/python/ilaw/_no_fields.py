@@ -6,13 +6,14 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ._film import LABELS, Blocks, Channel, frames_to_show
+from ._film import Blocks, Channel, edges_of, field_entry, forces_entry, frames_to_show, triangles_of
 from ._results import Run
 
 MOST_FRAMES = 300
-BOX = np.array([[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6],
-                [1, 3, 5], [3, 7, 5]])  # fmt: skip
-BOX_EDGES = np.array([[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]])
+QUADS = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
+BOX = triangles_of([QUADS])
+BOX_EDGES = edges_of([QUADS])
+Motion = tuple[Optional[dict[str, Any]], list[float]]  # what moves, and the times of its frames
 
 
 def places_of(run: Run) -> Optional[np.ndarray]:
@@ -33,7 +34,7 @@ def lanes(places: np.ndarray, dimension: int) -> np.ndarray:
     return offset
 
 
-def film_of_points(run: Run, blocks: Blocks, names: list[str], rows: np.ndarray) -> tuple[Optional[dict[str, Any]], list[float]]:
+def film_of_points(run: Run, blocks: Blocks, names: list[str], rows: np.ndarray) -> Motion:
     places = places_of(run)
     watched = [] if places is None else [k for k in range(len(places)) if f"n{k}.u0" in names]
     if not watched or not len(rows):
@@ -59,33 +60,30 @@ def film_of_points(run: Run, blocks: Blocks, names: list[str], rows: np.ndarray)
             values.setdefault(key, np.full((len(chosen), len(watched)), np.nan))[:, n] = rows[chosen, k]
     fields = []
     for (name, interface), array in values.items():
-        channel, (label, quantity) = Channel(), LABELS.get(name, (name.replace("_", " "), ""))
+        channel = Channel()
         for frame in array:
             channel.add(frame)
-        if channel.least >= channel.most and name != "status":
-            continue
-        fields.append({"name": name, "label": label, "interface": interface, "unit": run.unit_of(quantity) if quantity else "",
-                       "least": float(channel.least), "most": float(channel.most), "peaks": float(channel.most), "nodes": None,
-                       "values": channel.finish(blocks)})  # fmt: skip
-    fields.sort(key=lambda field: ("status", "displacement", "speed").index(field["name"])
-                if field["name"] in ("status", "displacement", "speed") else 9)  # fmt: skip
-    motion, force = Channel(), Channel()
-    for displacement, impulse in zip(u, r):
+        if channel.least < channel.most or name == "status":
+            fields.append(field_entry(run, blocks, (name, interface), channel, None))
+    first = {"status": 0, "displacement": 1, "speed": 2}
+    fields.sort(key=lambda field: first.get(field["name"], 3))
+    motion, everyone = Channel(), np.arange(len(watched))
+    for displacement in u:
         motion.add(displacement)
-        force.add(impulse / run.summary["dt"])
-    sizes = np.linalg.norm(r, axis=2) / run.summary["dt"]
-    everyone = np.arange(len(watched))
-    forces = {"nodes": blocks.add(everyone, "<i4"), "count": len(watched), "values": force.finish(blocks),
-              "most": float(sizes.max()), "typical": float(np.percentile(sizes[sizes > 0], 75)) if sizes.any() else 0.0,
-              "unit": run.unit_of("force")}  # fmt: skip
     offset = lanes(places, run.dimension)
     others = np.setdiff1d(np.arange(len(places)), watched)
     return {
-        "nodes": len(watched), "points": blocks.add((places + offset)[watched], "<f4"), "u": motion.finish(blocks),
-        "bodies": [{"name": "points", "nodes": len(watched), "drawn": blocks.add(everyone, "<i4")}], "isPoints": True,
-        "fields": fields, "forces": forces if sizes.any() else None, "modelNodes": blocks.add(np.array(watched), "<i4"),
-        "springs": _springs(run, watched), "others": blocks.add((places + offset)[others], "<f4") if len(others) else None,
-    }, rows[chosen, 0].tolist()  # fmt: skip
+        "nodes": len(watched),
+        "points": blocks.add((places + offset)[watched], "<f4"),
+        "modelNodes": blocks.add(np.array(watched), "<i4"),
+        "isPoints": True,
+        "u": motion.finish(blocks),
+        "bodies": [{"name": "points", "nodes": len(watched), "drawn": blocks.add(everyone, "<i4")}],
+        "fields": fields,
+        "forces": forces_entry(run, blocks, everyone, r / run.summary["dt"]),
+        "springs": _springs(run, watched),
+        "others": blocks.add((places + offset)[others], "<f4") if len(others) else None,
+    }, rows[chosen, 0].tolist()
 
 
 def _vector_names(dimension: int) -> set[str]:
@@ -111,7 +109,7 @@ def _springs(run: Run, watched: list[int]) -> Optional[dict[str, Any]]:
     return {"pairs": pairs, "anchors": anchors}
 
 
-def film_of_boxes(run: Run, blocks: Blocks) -> tuple[Optional[dict[str, Any]], list[float]]:
+def film_of_boxes(run: Run, blocks: Blocks) -> Motion:
     """Blocks and bars at their places in the scene, at rest."""
     corners, names = [], []
     for k, block in enumerate(run.model.get("blocks", [])):
@@ -129,9 +127,17 @@ def film_of_boxes(run: Run, blocks: Blocks) -> tuple[Optional[dict[str, Any]], l
     x = np.array(corners).reshape(-1, 3)
     still = Channel()
     still.add(np.zeros_like(x))
-    bodies = [
-        {"name": name, "nodes": 8, "triangles": blocks.add(BOX + 8 * k, "<i4"), "edges": blocks.add(BOX_EDGES + 8 * k, "<i4")}
-        for k, name in enumerate(names)
-    ]  # fmt: skip
-    return {"nodes": len(x), "points": blocks.add(x, "<f4"), "u": still.finish(blocks), "bodies": bodies, "isPoints": False,
-            "fields": [], "forces": None, "modelNodes": blocks.add(np.full(len(x), -1), "<i4")}, [0.0]  # fmt: skip
+    bodies = []
+    for k, name in enumerate(names):
+        triangles, edges = (blocks.add(part + 8 * k, "<i4") for part in (BOX, BOX_EDGES))
+        bodies.append({"name": name, "nodes": 8, "triangles": triangles, "edges": edges})
+    return {
+        "nodes": len(x),
+        "points": blocks.add(x, "<f4"),
+        "modelNodes": blocks.add(np.full(len(x), -1), "<i4"),
+        "isPoints": False,
+        "u": still.finish(blocks),
+        "bodies": bodies,
+        "fields": [],
+        "forces": None,
+    }, [0.0]

@@ -90,7 +90,7 @@ class Run:
             self.summary = json.loads(file.read_text(encoding="utf-8"))
             self.scene: dict[str, Any] = self.summary["scene"]["source"]
         except (ValueError, KeyError, TypeError) as reason:
-            raise UnreadableRun(f"{file}: found no summary of a run ({reason!r}), expected the one of `ilaw run`") from None
+            raise UnreadableRun(f"{file}: found no summary of a run ({reason!r}), expected that file whole") from None
         self.model: dict[str, Any] = self.scene["model"]
         types = {"points": self.model.get("dimension"), "rotating_spring": 2, "bars": 1}
         self.dimension: int = types.get(self.model["type"]) or 3
@@ -153,9 +153,8 @@ class Run:
         if not all(isinstance(units.get(key), str) for key in ("length", "mass", "time")):
             return ""
         length, mass, time = units["length"], units["mass"], units["time"]
-        force, stress, energy = NAMED_UNITS.get(
-            (length, mass, time), (f"{mass} {length}/{time}²", f"{mass}/({length} {time}²)", f"{mass} {length}²/{time}²")
-        )
+        composed = f"{mass} {length}/{time}²", f"{mass}/({length} {time}²)", f"{mass} {length}²/{time}²"
+        force, stress, energy = NAMED_UNITS.get((length, mass, time), composed)
         names = {"length": length, "time": time, "velocity": f"{length}/{time}", "force": force, "stress": stress}
         names |= {"energy": energy, "impulse": f"{force} {time}", "moment": f"{force} {length}"}
         names["temperature"] = units.get("temperature", "")

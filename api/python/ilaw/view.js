@@ -592,7 +592,7 @@ class Panel {
       };
       return make("b", label);
     });
-    if (given.left_out) make("span", key, `and ${given.left_out} more in history.csv`);
+    if (given.leftOut) make("span", key, `and ${given.leftOut} more in history.csv`);
     const go = event => {
       const box = this.canvas.getBoundingClientRect(), x = (event.clientX - box.left - 62) / (box.width - 72);
       play(false), show(positionAt(this.from + Math.max(0, Math.min(1, x)) * (this.to - this.from)));

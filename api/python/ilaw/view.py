@@ -56,7 +56,8 @@ def panels_of(run: Run, names: list[str]) -> list[Panel]:
         for name, k in column.items()
         if re.search(r"\.F\d$", name) and not node.match(name)
     ]
-    found = [Panel("energy", run.unit_of("energy"), list(balance.items())), Panel("force", run.unit_of("force"), forces)]
+    energies = list(balance.items())
+    found = [Panel("energy", run.unit_of("energy"), energies), Panel("force", run.unit_of("force"), forces)]
     motion: dict[str, list[tuple[str, int]]] = {}
     for name, k in column.items():
         match = node.match(name)
@@ -87,10 +88,9 @@ def curves_of(run: Run, blocks: Blocks, names: list[str], rows: np.ndarray) -> l
         curves = [(label, k) for label, k in panel.curves if spread.get(k, 0.0) > ROUNDING * largest]
         kept = set(sorted((k for _, k in curves), key=lambda k: -float(np.ptp(rows[:, k])))[:MOST_CURVES])
         if curves:
-            shown.append(
-                {"title": panel.title, "unit": panel.unit, "time": time, "left_out": len(curves) - len(kept),
-                 "curves": [{"name": label, "values": blocks.add(rows[:, k], "<f4")} for label, k in curves if k in kept]}
-            )  # fmt: skip
+            drawn = [{"name": label, "values": blocks.add(rows[:, k], "<f4")} for label, k in curves if k in kept]
+            left_out = len(curves) - len(kept)
+            shown.append({"title": panel.title, "unit": panel.unit, "time": time, "leftOut": left_out, "curves": drawn})
     return shown
 
 
@@ -103,15 +103,16 @@ def events_of(run: Run, notes: list[str]) -> list[dict[str, Any]]:
             events = [events[k] for k in sorted(most)]
         return events
     notes.append('For all events, add "events": true to "output" of the scene.')
-    first = [
-        {"time": interface["first_contact"], "interface": interface["name"], "event": "first contact", "count": 0, "nodes": []}
-        for interface in run.summary["interfaces"]
-        if interface.get("first_contact") is not None
+    touched = [i for i in run.summary["interfaces"] if i.get("first_contact") is not None]
+    return [
+        {"time": i["first_contact"], "interface": i["name"], "event": "first contact", "count": 0, "nodes": []}
+        for i in sorted(touched, key=lambda i: i["first_contact"])
     ]
-    return sorted(first, key=lambda event: event["time"])
 
 
-def film_of(run: Run, blocks: Blocks, megabytes: float, history: tuple[list[str], np.ndarray], notes: list[str]) -> tuple:
+def film_of(
+    run: Run, blocks: Blocks, megabytes: float, history: tuple[list[str], np.ndarray], notes: list[str]
+) -> tuple[Optional[dict[str, Any]], list[float]]:
     if run.field_files():
         return film_of_fields(run, blocks, megabytes, notes)
     every = max(1, round(run.summary["steps"] / 100))
@@ -119,7 +120,8 @@ def film_of(run: Run, blocks: Blocks, megabytes: float, history: tuple[list[str]
     film, times = film_of_points(run, blocks, *history)
     if film:
         if film["nodes"] < run.summary["nodes"]:
-            notes.insert(0, f"{film['nodes']} of {run.summary['nodes']} points are watched and shown; for all, {advice}.")
+            watched = f"{film['nodes']} of {run.summary['nodes']} points are watched and shown"
+            notes.insert(0, f"{watched}; for all, {advice}.")
         return film, times
     film, times = film_of_boxes(run, blocks)
     still = "The bodies are shown at rest, as the scene has them, because" if film else "No bodies are shown because"
@@ -140,12 +142,22 @@ def data_of(run: Run, megabytes: float) -> tuple[dict[str, Any], Blocks]:
         named = json.dumps([i["name"] for i in run.interfaces])
         notes.append(f'For curves of forces, add "forces": {named} to "output" of the scene.')
     return {
-        "title": run.title, "dimension": run.dimension, "timeUnit": run.unit_of("time"), "lengthUnit": run.unit_of("length"),
-        "times": times, "film": film, "statusNames": STATUS_NAMES, "obstacles": run.obstacles(np.array(times)),
+        "title": run.title,
+        "dimension": run.dimension,
+        "timeUnit": run.unit_of("time"),
+        "lengthUnit": run.unit_of("length"),
+        "times": times,
+        "film": film,
+        "statusNames": STATUS_NAMES,
+        "obstacles": run.obstacles(np.array(times)),
         "interfaces": [{"name": i["name"], "law": i["law"]} for i in run.interfaces],
-        "curves": curves_of(run, blocks, *history), "events": events_of(run, notes), "notes": notes,
-        "steps": run.summary["steps"], "dt": run.summary["dt"], "end": run.summary["time"],
-    }, blocks  # fmt: skip
+        "curves": curves_of(run, blocks, *history),
+        "events": events_of(run, notes),
+        "notes": notes,
+        "steps": run.summary["steps"],
+        "dt": run.summary["dt"],
+        "end": run.summary["time"],
+    }, blocks
 
 
 def page_of(run: Run, megabytes: float) -> str:
@@ -174,7 +186,8 @@ def read_library(file: Path) -> str:
     try:
         return file.read_text(encoding="utf-8").replace("</script", "<\\/script")
     except OSError:
-        raise MissingPackage(f"{file}: found no three.js; install it with `apt-get install libjs-three`") from None
+        advice = "install it with `apt-get install libjs-three`, or name its folder in ILAW_THREE"
+        raise MissingPackage(f"{file}: found no three.js; {advice}") from None
 
 
 class MissingPackage(Exception):
@@ -192,12 +205,13 @@ def write(folder: Path, output: Path, megabytes: float = 50.0) -> None:
 def main(arguments: Optional[Sequence[str]] = None) -> int:
     parser = argparse.ArgumentParser(
         prog="ilaw view",
-        description="Write a run as one HTML file: bodies in motion, fields, forces, curves and events, for any browser.",
+        description="Write a run as one HTML file: bodies in motion, fields, forces, curves, events.",
         epilog="Example: ilaw view results -o run.html",
     )
     parser.add_argument("folder", type=Path, help="folder that `ilaw run` wrote")
     parser.add_argument("-o", "--out", type=Path, help="the file (default: view.html in the folder)")
-    parser.add_argument("--megabytes", type=float, default=50.0, help="about the most that the data take (default: %(default)g)")
+    most = "about the most that the data take (default: %(default)g)"
+    parser.add_argument("--megabytes", type=float, default=50.0, help=most)
     options = parser.parse_args(arguments)
     output = options.out or options.folder / "view.html"
     try:
