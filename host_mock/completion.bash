@@ -18,7 +18,7 @@ _ilaw() {
   case $command in
     describe | check | bench)
       mapfile -t COMPREPLY < <(compgen -W "$(_ilaw_laws)" -- "$word"; compgen -f -X '!*.so' -- "$word"; compgen -d -- "$word") ;;
-    plot | table) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
+    plot | view | table) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
     *) mapfile -t COMPREPLY < <(compgen -f -X '!*.json' -- "$word"; compgen -d -- "$word") ;;
   esac
 }

@@ -4,9 +4,9 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libtinyxml2-dev gnuplot-nox
-          libvtk9-dev zlib1g-dev)
+          libvtk9-dev zlib1g-dev python3-numpy python3-vtk9 libjs-three)
 for_tests=(gfortran binutils abigail-tools libgtest-dev libgmock-dev libbenchmark-dev libsiconos-numerics-dev libfclib-dev qemu-user
-           dpkg-dev pkgconf python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv
+           dpkg-dev pkgconf python3-pytest python3-setuptools python3-wheel python3-pip python3-venv
            python3-matplotlib python3-pycparser python3-yaml)
 # Foreign solvers in which the laws are tested, and MPI. They are large: 1 GB with their dependencies.
 solvers=(lammps liblammps-dev libopenmpi-dev openmpi-bin python3-dolfinx python3-mpi4py yade libmujoco-dev calculix-ccx)
@@ -16,7 +16,7 @@ site=(doxygen python3-breathe python3-myst-parser furo libjs-katex)  # docs/site
 [ "${2:-}" != with-solvers ] || for_tests+=("${solvers[@]}")
 case ${1:-} in
   tests) packages+=("${for_tests[@]}") ;;
-  ci) packages+=("${for_tests[@]}" "${solvers[@]}" "${site[@]}" "${documents[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache
+  ci) packages+=("${for_tests[@]}" "${solvers[@]}" "${site[@]}" "${documents[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache chromium
                   llvm-14 llvm-spirv-14 pocl-opencl-icd ocl-icd-opencl-dev) ;;
   site) packages=("${site[@]}") ;;
   dealii) packages+=("${for_tests[@]}" "${dealii[@]}") ;;

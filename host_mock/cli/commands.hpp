@@ -20,6 +20,7 @@ namespace ilaw::host {
 // Each adds a command, which runs while the command line is parsed, where the user gave it.
 void add_run(CLI::App& app, int& code);
 void add_plot(CLI::App& app, int& code);
+void add_view(CLI::App& app, int& code);
 void add_table(CLI::App& app, int& code);
 void add_converge(CLI::App& app, int& code);
 void add_study(CLI::App& app, int& code);

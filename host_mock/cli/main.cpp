@@ -52,11 +52,11 @@ int run_command(int argc, char** argv) {
   app.footer(
       "Exit codes: 0 done; 1 the run failed (diverged, plugin error, interrupted); 2 bad usage or bad input, "
       "before\n"
-      "anything ran.\nExample: ilaw run scene.json --out results && ilaw plot results");
+      "anything ran.\nExample: ilaw run scene.json --out results && ilaw plot results && ilaw view results");
 
   int code = exit_done;
-  for (const auto add : {add_run, add_plot, add_table, add_converge, add_study, add_stress, add_list,
-                         add_describe, add_check, add_bench})
+  for (const auto add : {add_run, add_plot, add_view, add_table, add_converge, add_study, add_stress,
+                         add_list, add_describe, add_check, add_bench})
     add(app, code);
   try {
     app.parse(argc, argv);

@@ -108,7 +108,8 @@ class Run {
   // Results that an earlier run left in the folder, and pictures of them, would be taken for this one's.
   void clear() const {
     clear_checkpoints(options_.folder);
-    for (const char* name : {"summary.json", "history.csv", "events.csv", "history.png", "history.svg"})
+    for (const char* name :
+         {"summary.json", "history.csv", "events.csv", "history.png", "history.svg", "view.html"})
       std::filesystem::remove(options_.folder / name);
     std::vector<std::filesystem::path> earlier;
     for (const auto& entry : std::filesystem::directory_iterator(options_.folder))

@@ -58,7 +58,7 @@ TEST(Program, TellsBadInputFromFailureByItsExitCode) {
   EXPECT_EQ(run_program("plot " + ball).output,
             "ilaw: " + ball + ": found a file, expected a folder that `ilaw run SCENE --out FOLDER` wrote\n");
   for (const char* command :
-       {"", "run", "plot", "converge", "study", "list", "describe", "stress", "check", "bench"}) {
+       {"", "run", "plot", "view", "converge", "study", "list", "describe", "stress", "check", "bench"}) {
     EXPECT_THAT(run_program(std::string(command) + " --help"), Exits(0, HasSubstr("Example: "))) << command;
   }
 }
