@@ -7,8 +7,8 @@
 namespace ilaw::search {
 namespace {
 
-// In mean edges: strain at which the tree is fitted again, reach of the facets that are kept beyond the closest
-// one, and motion that a list of near points is good for.
+// In mean edges: strain at which the tree is fitted again, reach of the facets that are kept beyond the
+// closest one, and motion that a list of near points is good for.
 constexpr double most_strain = 0.05, kept_reach = 0.5, most_motion = 0.5, most_margin = 0.25,
                  least_margin = 1e-3;
 // Steps of the given reach that a list of near points should last for.
@@ -242,7 +242,9 @@ void Finder::look_around(Known& known, Vec place, std::int64_t& looked_at) const
   };
   std::array<Visit, Tree::most_depth> stack;
   std::size_t depth = 0;
-  const auto lower_of = [&](std::size_t n) { return std::sqrt(least_square(box_of(place), surface_.box(n))); };
+  const auto lower_of = [&](std::size_t n) {
+    return std::sqrt(least_square(box_of(place), surface_.box(n)));
+  };
   stack[depth++] = {0, lower_of(0)};
   while (depth > 0) {
     const Visit visit = stack[--depth];
@@ -299,7 +301,8 @@ void Finder::try_all(std::size_t point, Pair& best, std::int64_t& looked_at) con
       stack[depth++] = static_cast<std::int32_t>(n) + 1;
       continue;
     }
-    for (std::int32_t k = node.first; k < node.end; ++k) try_facet(tree.item(k), now_[point], best, looked_at);
+    for (std::int32_t k = node.first; k < node.end; ++k)
+      try_facet(tree.item(k), now_[point], best, looked_at);
   }
 }
 
