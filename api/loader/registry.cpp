@@ -31,9 +31,20 @@ struct closer {
 };
 using dynamic_handle = std::unique_ptr<void, closer>;
 
-// dlopen gives what is loaded already by the name of a path, whatever file has that name by now.
+// The loader of glibc knows a library by each path under which it was asked for, whatever file has that path
+// now.
 bool is_loaded(const std::string& path) {
   return dynamic_handle(dlopen(path.c_str(), RTLD_LAZY | RTLD_NOLOAD)) != nullptr;
+}
+
+// Name of the loaded object that an address lies in, null where it lies in none.
+const char* object_at(const void* address) {
+  Dl_info found;
+  return dladdr(address, &found) != 0 ? found.dli_fname : nullptr;
+}
+
+bool is_kept(const ilaw_library& closed) {
+  return closed.users == 0 && object_at(closed.entry) == closed.object;
 }
 
 // "ilaw_plugin_v2" tells a library of another major version from a file that is no law library at all.
@@ -47,16 +58,16 @@ std::string other_version(void* handle) {
   return std::string("not a law library: the symbol ") + ILAW_ENTRY_NAME + " is missing";
 }
 
-void* entry_of(const std::string& path, void* handle) {
-  void* symbol = dlsym(handle, ILAW_ENTRY_NAME);
+const void* entry_of(const std::string& path, void* handle) {
+  const void* symbol = dlsym(handle, ILAW_ENTRY_NAME);
   if (!symbol) throw refusal(ILAW_BAD_LIBRARY, path + ": " + other_version(handle));
   return symbol;
 }
 
-const ilaw_plugin* described(const std::string& path, void* symbol, storage& kept) {
-  ilaw_entry_function entry = nullptr;
-  std::memcpy(&entry, &symbol, sizeof entry);  // ISO C++ has no cast from object to function pointer
-  return checked_plugin(path, entry(), kept);
+const ilaw_plugin* described(const std::string& path, const void* entry, storage& kept) {
+  ilaw_entry_function function = nullptr;
+  std::memcpy(&function, &entry, sizeof function);  // ISO C++ has no cast from object to function pointer
+  return checked_plugin(path, function(), kept);
 }
 
 [[noreturn]] void refuse_change(const std::string& path, const file_status& then, const file_status& now,
@@ -83,28 +94,30 @@ void load(ilaw_library& made, const open_file& file) {
   if (const file_status now = status_of(path);
       !made.file.is_unchanged(now) || !made.file.is_unchanged(file.status()))
     refuse_change(path, made.file, now, "while it is loaded");
-  void* entry = entry_of(path, handle.get());
-  const std::string mapped = was_loaded ? mapped_file(entry) : "";
+  made.entry = entry_of(path, handle.get());
+  made.object = object_at(made.entry);
+  const std::string mapped = was_loaded ? mapped_file(made.entry) : "";
   if (!mapped.empty() && mapped != path && !status_of(mapped).is_same_file(made.file))
     throw refusal(ILAW_BAD_LIBRARY, path + ": changed since another part of this process loaded it: found " +
                                         mapped + ", expected the file that has the path now");
-  made.plugin = described(path, entry, made.kept);
+  made.plugin = described(path, made.entry, made.kept);
   control.check(path, "loading it");
   if (written) check_same(written->parsed, *made.plugin, path);
   made.handle = handle.release();
 }
 
-// The library of a file or path among those that are loaded.
+// The library of a file among those that are loaded, whatever its path.
 ilaw_library* find(std::list<ilaw_library>& open, const std::string& path, const file_status& now) {
-  for (ilaw_library& library : open) {
-    if (library.path != path && !library.file.is_same_file(now)) continue;
-    if (!library.file.is_unchanged(now))
+  for (ilaw_library& library : open)
+    if (library.file.is_unchanged(now)) {
+      library.file = now;
+      return &library;
+    }
+  for (const ilaw_library& library : open)
+    if (library.path == path || library.file.is_same_file(now))
       refuse_change(path, library.file, now,
                     library.users > 0 ? "until its last handle and interface are closed"
-                                      : "while this process runs, since it cannot unload the library");
-    library.file = now;
-    return &library;
-  }
+                                      : "as long as this process keeps it loaded");
   return nullptr;
 }
 
@@ -116,8 +129,7 @@ ilaw_library* open_library(const std::string& path) {
   const open_file file(path);
   const file_status now = file.status();
   if (!now.exists) throw refusal(ILAW_NOT_FOUND, path + ": no such file");
-  std::erase_if(all.open,
-                [](const ilaw_library& closed) { return closed.users == 0 && !is_loaded(closed.path); });
+  std::erase_if(all.open, [](const ilaw_library& one) { return one.users == 0 && !is_kept(one); });
   ilaw_library* found = find(all.open, path, now);
   if (!found || found->users == 0) {
     std::list<ilaw_library> made(1);
@@ -143,7 +155,7 @@ void release(ilaw_library& library) {
   const std::scoped_lock lock(all.guard);
   if (--library.users > 0) return;
   dlclose(library.handle);
-  if (!is_loaded(library.path))
+  if (!is_kept(library))
     all.open.remove_if([&library](const ilaw_library& open) { return &open == &library; });
 }
 

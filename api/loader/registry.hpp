@@ -15,6 +15,8 @@ struct ilaw_library {
   std::string path;
   ilaw::loading::file_status file;  // as it was loaded
   void* handle = nullptr;
+  const void* entry = nullptr;   // address of its entry function
+  const char* object = nullptr;  // name of the loaded object there
   ilaw::loading::storage kept = {};
   const ilaw_plugin* plugin = nullptr;
   ilaw::loading::instance_descriptions instances = {};

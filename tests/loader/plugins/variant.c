@@ -1,5 +1,5 @@
-/* A law that gives r = 0, described in plain C99, with one thing wrong in each variant but GOOD and
- * NEWER_MINOR. */
+/* A law that gives r = 0, described in plain C99, with one thing wrong in each variant but GOOD, NEWER_MINOR,
+ * and NUMBER_1 and NUMBER_2, two builds of one library: as large as each other, and r is their number. */
 #define ILAW_BUILDING_PLUGIN
 #include <ilaw/ilaw.h>
 
@@ -154,13 +154,21 @@ static ilaw_result ILAW_CALL info(const ilaw_instance* instance, ilaw_instance_i
 #define REASON "wrong \033[2J"
 #endif
 
+#if defined(VARIANT_NUMBER_1)
+#define IMPULSE 1.0
+#elif defined(VARIANT_NUMBER_2)
+#define IMPULSE 2.0
+#else
+#define IMPULSE 0.0
+#endif
+
 static ilaw_result ILAW_CALL nothing(const ilaw_instance* instance, const ilaw_batch* batch,
                                      ilaw_report* report) {
   int64_t i;
   (void)instance;
   (void)report;
   for (i = 0; batch->impulse.values && i < batch->node_count; ++i)
-    batch->impulse.values[i * batch->impulse.node_stride] = 0.0;
+    batch->impulse.values[i * batch->impulse.node_stride] = IMPULSE;
 #ifdef VARIANT_ODD_STATUS
   for (i = 0; batch->status && i < batch->node_count; ++i) batch->status[i * batch->status_stride] = 42;
 #endif
@@ -231,6 +239,10 @@ typedef struct newer_law {
 #define TITLE "caf\xe9"
 #elif defined(VARIANT_OVERLONG_UTF8)
 #define TITLE "\xc0\xaf"
+#elif defined(VARIANT_NUMBER_1)
+#define TITLE "Number 1"
+#elif defined(VARIANT_NUMBER_2)
+#define TITLE "Number 2"
 #else
 #define TITLE "Nothing"
 #endif

@@ -1,0 +1,139 @@
+// Files that changed since a library was opened, by what the user reads of them; where laws may not lie.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ilaw/loader.hpp>
+
+#include "replaced_files.hpp"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+
+#include <memory>
+#include <string>
+
+namespace {
+
+using namespace ilaw::testing::matchers;
+using namespace ilaw::testing::replaced_files;
+
+class Changed : public testing::Test {
+ protected:
+  static std::string answer(const fs::path& file) {
+    try {
+      return ilaw::library(file.string()).law("zero")->title;
+    } catch (const ilaw::error& error) {
+      EXPECT_EQ(error.code(), ILAW_BAD_LIBRARY);
+      return error.what();
+    }
+  }
+
+  TemporaryFolder folder;
+  const fs::path file = fs::canonical(folder.path) / "law.so";
+  const std::string changed = file.string() + ": changed since it was opened: ",
+                    size = std::to_string(bytes_of(1).size()) + " bytes",
+                    until =
+                        ", expected the file of " + size + " until its last handle and interface are closed";
+};
+
+TEST_F(Changed, LibraryIsRefusedUntilTheOldOneIsGone) {
+  install(file, 1);
+  auto old = std::make_unique<ilaw::library>(file.string());
+  install(file, 2);
+  EXPECT_EQ(answer(file), changed + "another file of " + size + " took its place" + until);
+  EXPECT_STREQ(old->law("zero")->title, "Number 1");
+  old.reset();
+  EXPECT_EQ(answer(file), "Number 2");
+}
+
+TEST_F(Changed, LibraryIsRefusedWhenWrittenTo) {
+  install(file, 1);
+  auto old = std::make_unique<ilaw::library>(file.string());
+  write_over(file, bytes_of(2), 0);
+  EXPECT_EQ(answer(file), changed + "its file was written to and has " + size + until);
+  old.reset();
+  EXPECT_EQ(answer(file), "Number 2");
+}
+
+TEST_F(Changed, LibraryWithAnotherNameIsTheSame) {
+  install(file, 1);
+  const ilaw::library old(file.string());
+  const fs::path other = file.parent_path() / "other.so";
+  fs::create_hard_link(file, other);
+  EXPECT_EQ(ilaw::library(other.string()).get(), old.get());
+  EXPECT_EQ(ilaw::library(file.string()).get(), old.get());
+  fs::remove(other);
+  EXPECT_EQ(ilaw::library(file.string()).get(), old.get());
+}
+
+// dlclose leaves it loaded, and dlopen would give it again by its path.
+TEST_F(Changed, LibraryThatCannotBeUnloadedIsRefused) {
+  fs::copy_file(ILAW_TEST_PLUGINS "/kept.so", file);
+  EXPECT_EQ(answer(file), "Nothing");
+  EXPECT_EQ(answer(file), "Nothing");
+  install(file, 2);
+  EXPECT_THAT(answer(file), StartsWith(changed));
+  EXPECT_THAT(answer(file), HasSubstr("as long as this process keeps it loaded"));
+}
+
+// A host that does its own dlopen, or another loader: each has its own list.
+TEST_F(Changed, LibraryOfAnotherPartOfTheProcessIsRefused) {
+  install(file, 1);
+  void* foreign = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  ASSERT_NE(foreign, nullptr);
+  install(file, 2);
+  EXPECT_EQ(answer(file), file.string() + ": changed since another part of this process loaded it: found " +
+                              file.string() + " (deleted), expected the file that has the path now");
+  dlclose(foreign);
+  foreign = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  EXPECT_EQ(answer(file), "Number 2");
+  install(file, 1);
+  EXPECT_THAT(answer(file), HasSubstr("as long as this process keeps it loaded"));
+  dlclose(foreign);
+  EXPECT_EQ(answer(file), "Number 1");
+}
+
+// By the path of a descriptor, /proc/self/fd/3, it would not find the other one.
+TEST_F(Changed, LibraryFindsOthersByItsOrigin) {
+  for (const char* name : {"origin.so", "libneeded.so"})
+    fs::copy_file(std::string(ILAW_TEST_PLUGINS "/") + name, folder.path / name);
+  EXPECT_EQ(answer(folder.path / "origin.so"), "Nothing");
+}
+
+TEST_F(Changed, LibraryThatEveryUserMayWriteToIsRefused) {
+  install(file, 1);
+  fs::permissions(file, fs::perms(0666));
+  const std::string said =
+      file.string() + ": every user may write to the file, expected no such permission (chmod o-w)";
+  EXPECT_EQ(answer(file), said);
+  EXPECT_THROW(ilaw::read_description(file.string()), ilaw::error);
+  fs::permissions(file, fs::perms(0664));  // the owner chose the group
+  EXPECT_EQ(answer(file), "Number 1");
+}
+
+// Where every user may rename a folder, he may put his own in its place.
+TEST_F(Changed, FolderBelowOneThatEveryUserMayWriteToIsNotSearched) {
+  const fs::path top = fs::canonical(folder.path), in = top / "deep" / "in", link = top / "link";
+  fs::create_directories(in);
+  fs::create_directory_symlink(in, link);
+  install(in / "law.so", 1);
+  const auto found = [](const fs::path& searched) -> std::string {
+    setenv("ILAW_PATH", searched.c_str(), 1);
+    try {
+      return ilaw::library::named("law").path();
+    } catch (const ilaw::error& error) {
+      return error.what();
+    }
+  };
+  const std::string weak = "not searched, since every user may write there: ", by = " (by " + top.string();
+  EXPECT_EQ(found(in), (in / "law.so").string());
+  fs::permissions(top / "deep", fs::perms(0777));
+  EXPECT_THAT(found(in), HasSubstr(weak + in.string() + by + "/deep)"));
+  EXPECT_THAT(found(link), HasSubstr(weak + link.string() + by + "/deep)"));
+  fs::permissions(top / "deep", fs::perms(01777));  // the sticky bit forbids to rename what others have
+  EXPECT_EQ(found(in), (in / "law.so").string());
+  EXPECT_EQ(found(link), (in / "law.so").string());
+  fs::permissions(in, fs::perms(01777));  // but not to add a library
+  EXPECT_THAT(found(in), HasSubstr(weak + in.string()));
+  unsetenv("ILAW_PATH");
+}
+
+}  // namespace

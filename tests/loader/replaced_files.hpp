@@ -1,0 +1,70 @@
+// replaced_files.hpp - two builds of one library, put onto the disk in every way.
+#pragma once
+
+#include "support/program.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+namespace ilaw::testing::replaced_files {
+
+namespace fs = std::filesystem;
+
+inline void must(bool well, const std::string& what) {
+  if (!well) throw std::runtime_error(what);
+}
+
+inline const std::string& bytes_of(int version) {
+  static const std::array<std::string, 2> both = {programs::text_of(ILAW_TEST_PLUGINS "/number_1.so"),
+                                                  programs::text_of(ILAW_TEST_PLUGINS "/number_2.so")};
+  return both.at(static_cast<std::size_t>(version - 1));
+}
+
+// Writes the bytes over those that are there. Each write has a time of its own, however coarse the clock is;
+// or keeps the time, as cp -p does, and then differs in the time of the change alone.
+inline void write_over(const fs::path& file, const std::string& bytes, int flags, bool keeps_time = false) {
+  static std::int64_t clock = 1'000'000'000;
+  const int out = open(file.c_str(), O_WRONLY | O_CREAT | flags, 0755);
+  struct stat before {};
+  must(out >= 0 && fstat(out, &before) == 0, "cannot open " + file.string());
+  must(pwrite(out, bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size()), "cannot write");
+  const timespec written = keeps_time ? before.st_mtim : timespec{++clock, 0};
+  const std::array<timespec, 2> times = {written, written};
+  must(futimens(out, times.data()) == 0, "cannot set the time");
+  for (struct stat now = before; keeps_time && now.st_ctim.tv_sec == before.st_ctim.tv_sec &&
+                                 now.st_ctim.tv_nsec == before.st_ctim.tv_nsec;) {
+    usleep(100);
+    must(futimens(out, times.data()) == 0 && fstat(out, &now) == 0, "cannot set the time");
+  }
+  must(close(out) == 0, "cannot close");
+}
+
+struct TemporaryFolder {
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "ilaw_replaced_XXXXXX").string();
+    must(mkdtemp(name.data()) != nullptr, "no folder");
+    path = name;
+    fs::permissions(path, fs::perms(0755));
+  }
+  ~TemporaryFolder() { fs::remove_all(path); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  fs::path path;
+};
+
+inline void install(const fs::path& file, int version) {
+  const fs::path made = file.string() + ".made";
+  write_over(made, bytes_of(version), 0);
+  fs::rename(made, file);
+}
+
+}  // namespace ilaw::testing::replaced_files

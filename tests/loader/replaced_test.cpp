@@ -1,0 +1,357 @@
+// Libraries that are replaced, overwritten, truncated, moved and removed while they are open: random
+// sequences of commands against a model. A library that opens speaks the version that its path has on the
+// disk.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ilaw/loader.hpp>
+
+#include "replaced_files.hpp"
+#include "support/random.hpp"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <list>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace ilaw::testing::replaced_files;
+
+// ---- commands -------------------------------------------------------------------------------------------
+
+enum class Act {
+  install,     // a new file takes the place
+  write,       // the same file has other bytes
+  copy,        // as cp does: truncates, then writes
+  copy_again,  // and sets the time back
+  truncate,
+  remove,
+  link,  // the other path becomes a second name of the file
+  move,  // to the other path
+  open,
+  open_named,
+  search,
+  create,
+  evaluate,
+  describe,
+  close,
+  destroy,
+  count
+};
+constexpr std::array<const char*, static_cast<std::size_t>(Act::count)> act_names = {
+    "install", "write",      "copy",   "copy_again", "truncate", "remove",   "link",  "move",
+    "open",    "open_named", "search", "create",     "evaluate", "describe", "close", "destroy"};
+constexpr std::array<const char*, 2> file_names = {"left", "right"};
+
+struct Command {
+  Act act;
+  int file;     // of file_names
+  int version;  // 1 or 2
+  int choice;   // of the handles or interfaces, modulo their number
+
+  std::string text() const {
+    return std::string(act_names.at(static_cast<std::size_t>(act))) + " " + std::to_string(version) + " " +
+           file_names.at(static_cast<std::size_t>(file)) + " #" + std::to_string(choice);
+  }
+};
+
+std::vector<Command> random_commands(std::uint64_t seed) {
+  ilaw::testing::Random random(seed);
+  std::vector<Command> commands;
+  for (int k = 0; k < 40; ++k)
+    commands.push_back({static_cast<Act>(random.below(static_cast<int>(Act::count))), random.below(2),
+                        1 + random.below(2), random.below(1000)});
+  return commands;
+}
+
+// ---- model ----------------------------------------------------------------------------------------------
+
+struct Content {
+  int version;     // 0: truncated
+  int writes = 0;  // to it, in its place
+  int names = 0;   // times that its names changed
+};
+
+struct OpenLibrary {
+  ilaw_library* library;
+  int file;
+  std::shared_ptr<Content> content;
+  Content then;          // when it was opened
+  int users = 0;         // openings and interfaces
+  bool is_torn = false;  // truncated while it is loaded: none of its code may run again
+
+  bool was_written() const { return content->writes != then.writes; }
+};
+
+struct OpenInterface {
+  ilaw_interface* interface;
+  OpenLibrary* from;
+};
+
+class Machine {
+ public:
+  explicit Machine(fs::path folder) : folder_(std::move(folder)) {}
+
+  void run(const Command& c) {
+    switch (c.act) {
+      case Act::install:
+        forget(c.file);
+        install(path(c.file), c.version);
+        content(c.file) = std::make_shared<Content>(Content{c.version});
+        break;
+      case Act::write:
+        return rewrite(c, 0, false);
+      case Act::copy:
+        return rewrite(c, O_TRUNC, false);
+      case Act::copy_again:
+        return rewrite(c, O_TRUNC, true);
+      case Act::truncate:
+        if (!content(c.file)) return;
+        tear(c.file);
+        fs::resize_file(path(c.file), bytes_of(1).size() / 2);
+        write_over(path(c.file), "\x7f", 0);
+        ++content(c.file)->writes;
+        content(c.file)->version = 0;
+        break;
+      case Act::remove:
+        forget(c.file);
+        fs::remove(path(c.file));
+        break;
+      case Act::link:
+        if (!content(c.file) || content(c.file) == content(1 - c.file)) return;
+        forget(1 - c.file);
+        fs::remove(path(1 - c.file));
+        fs::create_hard_link(path(c.file), path(1 - c.file));
+        content(1 - c.file) = content(c.file);
+        ++content(c.file)->names;
+        break;
+      case Act::move:
+        if (!content(c.file) || content(c.file) == content(1 - c.file)) return;
+        forget(1 - c.file);
+        fs::rename(path(c.file), path(1 - c.file));
+        ++content(c.file)->names;
+        content(1 - c.file) = std::move(content(c.file));
+        break;
+      case Act::open:
+        return open_and_judge(c.file, path(c.file).string(), ilaw_library_open);
+      case Act::open_named:
+        return open_and_judge(c.file, file_names.at(static_cast<std::size_t>(c.file)),
+                              ilaw_library_open_named);
+      case Act::search:
+        return search();
+      case Act::create:
+        return create(c.choice);
+      case Act::evaluate:
+        return evaluate(c.choice);
+      case Act::describe:
+        return describe(c.choice);
+      case Act::close:
+        return close_one(c.choice);
+      case Act::destroy:
+        return destroy_one(c.choice);
+      case Act::count:
+        break;
+    }
+  }
+
+ private:
+  fs::path path(int file) const {
+    return folder_ / (std::string(file_names.at(static_cast<std::size_t>(file))) + ".so");
+  }
+  std::shared_ptr<Content>& content(int file) { return contents_.at(static_cast<std::size_t>(file)); }
+
+  void forget(int file) {
+    if (content(file)) ++content(file)->names;
+    content(file).reset();
+  }
+  void tear(int file) {
+    for (OpenLibrary& one : libraries_)
+      if (one.content == content(file)) one.is_torn = true;
+  }
+  void rewrite(const Command& c, int flags, bool keeps_time) {
+    if (!content(c.file)) content(c.file) = std::make_shared<Content>();
+    if (flags & O_TRUNC) tear(c.file);
+    write_over(path(c.file), bytes_of(c.version), flags, keeps_time);
+    ++content(c.file)->writes;
+    content(c.file)->version = c.version;
+  }
+
+  // Which refusal is right: one text, or none, or either where only the names of a file changed.
+  void open_and_judge(int file, const std::string& text,
+                      ilaw_result(ILAW_CALL* open)(const char*, ilaw_library**, char*, std::size_t)) {
+    const std::shared_ptr<Content>& on_disk = content(file);
+    std::array<char, 1024> message{};
+    ilaw_library* library = nullptr;
+    const ilaw_result code = open(text.c_str(), &library, message.data(), message.size());
+    const std::string said(message.data());
+    must((code == ILAW_OK) == (library != nullptr), "code " + std::to_string(code) + ", " + said);
+    if (!on_disk) return must(code == ILAW_NOT_FOUND, "no such file, but: " + said);
+    bool must_refuse = false, may_refuse = false, is_open = false;
+    for (const OpenLibrary& one : libraries_) {
+      const bool is_same = one.content == on_disk;
+      must_refuse = must_refuse || (is_same ? one.was_written() : one.file == file);
+      may_refuse = may_refuse || (is_same && on_disk->names != one.then.names);
+      is_open = is_open || (is_same && !one.was_written());
+    }
+    must_refuse = must_refuse && !is_open;
+    const std::string changed = path(file).string() + ": changed since it was opened";
+    const bool is_refused = code == ILAW_BAD_LIBRARY && said.starts_with(changed);
+    if (must_refuse) return must(is_refused, "opened, or refused for another reason: " + said);
+    if (may_refuse && is_refused) return;
+    if (on_disk->version == 0)
+      return must(code == ILAW_BAD_LIBRARY && said.find(": truncated at ") != std::string::npos, said);
+    must(code == ILAW_OK, "refused: " + said);
+    auto known = std::find_if(libraries_.begin(), libraries_.end(),
+                              [library](const OpenLibrary& one) { return one.library == library; });
+    if (known == libraries_.end())
+      known = libraries_.insert(known, {library, file, on_disk, *on_disk});
+    else
+      known->then.names = on_disk->names;
+    must(known->content == on_disk, "the object of another file");
+    ++known->users;
+    handles_.push_back(&*known);
+    judge_title(*known);
+  }
+
+  static void judge_title(const OpenLibrary& one) {
+    const std::string title = ilaw_library_law(one.library, "zero")->title;
+    must(title == "Number " + std::to_string(one.then.version), "says: " + title);
+  }
+  // Of code that other bytes took the place of, nothing is known.
+  static bool is_sound(const OpenLibrary& one) { return !one.is_torn && !one.was_written(); }
+
+  void describe(int choice) const {
+    if (const OpenLibrary* one = chosen(handles_, choice); one && is_sound(*one)) judge_title(*one);
+  }
+  void search() const {
+    std::set<std::string> found, expected;
+    for (const std::string& file : ilaw::search())
+      if (fs::path(file).parent_path() == folder_) found.insert(file);
+    for (int file = 0; file < 2; ++file)
+      if (contents_.at(static_cast<std::size_t>(file))) expected.insert(path(file).string());
+    must(found == expected, "search found " + std::to_string(found.size()) + " files");
+  }
+  void create(int choice) {
+    OpenLibrary* one = chosen(handles_, choice);
+    if (!one || !is_sound(*one)) return;
+    ilaw_setup setup{};
+    setup.struct_size = sizeof setup;
+    setup.dimension = 1;
+    setup.delassus_form = ILAW_DELASSUS_SCALAR;
+    setup.frame = ILAW_FRAME_LOCAL;
+    setup.numbers = ILAW_NUMBERS_DOUBLE;
+    std::array<char, 1024> message{};
+    ilaw_interface* made = nullptr;
+    const ilaw_result code =
+        ilaw_interface_create(one->library, nullptr, &setup, &made, message.data(), message.size());
+    must(code == ILAW_OK, std::string("create: ") + message.data());
+    ++one->users;
+    interfaces_.push_back({made, one});
+  }
+  void evaluate(int choice) const {
+    if (interfaces_.empty()) return;
+    const OpenInterface& one = interfaces_[static_cast<std::size_t>(choice) % interfaces_.size()];
+    if (!is_sound(*one.from)) return;
+    double r = 7.0;
+    ilaw_batch batch{};
+    batch.struct_size = sizeof batch;
+    batch.node_count = 1;
+    batch.impulse = {&r, nullptr, 1, 1};
+    must(ilaw_interface_evaluate(one.interface, &batch, nullptr) == ILAW_OK, "evaluate failed");
+    must(r == one.from->then.version, "gives an impulse of " + std::to_string(r));
+  }
+  void close_one(int choice) {
+    OpenLibrary* one = chosen(handles_, choice);
+    if (!one || one->is_torn) return;
+    handles_.erase(std::find(handles_.begin(), handles_.end(), one));
+    ilaw_library_close(one->library);
+    give_back(*one);
+  }
+  void destroy_one(int choice) {
+    if (interfaces_.empty()) return;
+    const auto at = interfaces_.begin() + choice % static_cast<int>(interfaces_.size());
+    const OpenInterface one = *at;
+    if (one.from->is_torn) return;
+    interfaces_.erase(at);
+    ilaw_interface_destroy(one.interface);
+    give_back(*one.from);
+  }
+  void give_back(OpenLibrary& one) {
+    if (--one.users == 0) libraries_.remove_if([&one](const OpenLibrary& other) { return &other == &one; });
+  }
+  static OpenLibrary* chosen(const std::vector<OpenLibrary*>& all, int choice) {
+    return all.empty() ? nullptr : all[static_cast<std::size_t>(choice) % all.size()];
+  }
+
+  fs::path folder_;
+  std::array<std::shared_ptr<Content>, 2> contents_;
+  std::list<OpenLibrary> libraries_;
+  std::vector<OpenLibrary*> handles_;  // once per opening
+  std::vector<OpenInterface> interfaces_;
+};
+
+// ---- runs -----------------------------------------------------------------------------------------------
+
+// What goes wrong, empty where all is well: in a process of its own, which may crash and leaves nothing
+// loaded.
+std::string fault_of(const std::vector<Command>& commands) {
+  const TemporaryFolder folder;
+  std::array<int, 2> ends{};
+  must(pipe(ends.data()) == 0, "no pipe");
+  const pid_t child = fork();
+  if (child == 0) {
+    setenv("ILAW_PATH", folder.path.c_str(), 1);
+    std::string fault;
+    try {
+      Machine machine(fs::canonical(folder.path));
+      for (const Command& command : commands) machine.run(command);
+    } catch (const std::exception& error) {
+      fault = error.what();
+    }
+    _exit(write(ends[1], fault.data(), fault.size()) == static_cast<ssize_t>(fault.size()) ? 0 : 1);
+  }
+  close(ends[1]);
+  std::string fault(1024, '\0');
+  const ssize_t got = read(ends[0], fault.data(), fault.size());
+  close(ends[0]);
+  int status = 0;
+  must(waitpid(child, &status, 0) == child, "no child");
+  fault.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+  if (WIFSIGNALED(status)) return "signal " + std::to_string(WTERMSIG(status));
+  return fault.empty() && status != 0 ? "exit status " + std::to_string(status) : fault;
+}
+
+// Without all commands that the fault does not need.
+std::vector<Command> shrunk(std::vector<Command> commands) {
+  for (std::size_t at = commands.size(); at-- > 0;) {
+    std::vector<Command> fewer = commands;
+    fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(at));
+    if (fault_of(fewer).empty()) continue;
+    commands = fewer;
+    at = commands.size();
+  }
+  return commands;
+}
+
+TEST(ReplacedLibrary, SpeaksWhatIsOnTheDiskOrIsRefused) {
+  ASSERT_EQ(bytes_of(1).size(), bytes_of(2).size());
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const std::vector<Command> commands = random_commands(seed);
+    if (fault_of(commands).empty()) continue;
+    const std::vector<Command> least = shrunk(commands);
+    std::string text;
+    for (const Command& command : least) text += "\n  " + command.text();
+    FAIL() << "seed " << seed << ": " << fault_of(least) << text;
+  }
+}
+
+}  // namespace
