@@ -140,22 +140,6 @@ void shared_value(const Subject& subject) {
   });
 }
 
-void smooth_absent(const Subject& subject) {
-  for_trials_per_node_too(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        if (!trial.reads(ILAW_INPUT_V_SMOOTH)) return false;
-        Script with = draw_script(trial, draw), without = with;
-        for (std::size_t k = 0; k < with.size(); ++k) {
-          with[k].v_smooth = with[k].v_free;
-          without[k].v_smooth.clear();
-        }
-        expect_same(trial, with, run(trial, without), run(trial, with), "with v_free as v_smooth, too");
-        return true;
-      },
-      "the law does not ask for v_smooth");
-}
-
 // A host of coupled contacts may give it to all of its laws.
 void smooth_unasked(const Subject& subject) {
   for_trials_per_node_too(
@@ -265,8 +249,6 @@ std::vector<Rule> independence_rules() {
        "ilaw.h, ilaw_batch.amounts", Needs::motion, amounts},
       {"floats-rounded", "A float result is the double result rounded once; status and state are the same.",
        "ilaw.h, ILAW_NUMBERS_DOUBLE", Needs::motion, floats_rounded},
-      {"smooth-absent", "Without v_smooth the law gives the bits that it gives with v_free as v_smooth.",
-       "ilaw.h, ilaw_batch.v_smooth", Needs::motion, smooth_absent},
       {"smooth-unasked", "v_smooth changes no bit of an instance that does not ask for it.",
        "ilaw.h, ILAW_INPUT_V_SMOOTH", Needs::motion, smooth_unasked},
       {"gap-offset", "gap_offset is subtracted from the gap.", "ilaw.h, ilaw_batch.gap_offset", Needs::motion,

@@ -1,4 +1,4 @@
-// Rules: what a law makes of its state, and of nodes that are out of reach.
+// Rules: what a law makes of its state, of v_smooth, and of nodes that are out of reach.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/rule.hpp"
 
@@ -110,6 +110,22 @@ void skip_free(const Subject& subject) {
       "the law does not permit it");
 }
 
+void smooth_absent(const Subject& subject) {
+  for_trials_per_node_too(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        if (!trial.reads(ILAW_INPUT_V_SMOOTH)) return false;
+        Script with = draw_script(trial, draw), without = with;
+        for (std::size_t k = 0; k < with.size(); ++k) {
+          with[k].v_smooth = with[k].v_free;
+          without[k].v_smooth.clear();
+        }
+        expect_same(trial, with, run(trial, without), run(trial, with), "with v_free as v_smooth, too");
+        return true;
+      },
+      "the law does not ask for v_smooth");
+}
+
 // Whether an entry of the state is one of a history: numbers that the law may not read again.
 bool is_history(const Trial& trial, std::size_t entry) {
   for (std::uint32_t k = 0; k < trial.info.state_variable_count; ++k) {
@@ -195,6 +211,8 @@ std::vector<Rule> state_rules() {
        "With ILAW_MAY_SKIP_FREE a node that was free gets r = 0, no energy, no amounts, and keeps its state "
        "out of reach.",
        "ilaw.h, ILAW_MAY_SKIP_FREE", Needs::motion, skip_free},
+      {"smooth-absent", "Without v_smooth the law gives the bits that it gives with v_free as v_smooth.",
+       "ilaw.h, ilaw_batch.v_smooth", Needs::motion, smooth_absent},
       {"foreign-state",
        "A state that the law cannot have written is bad input, or does no harm; NaN and infinity "
        "are bad input, in a history in the step that reads them.",
