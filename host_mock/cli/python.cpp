@@ -8,24 +8,26 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 extern char** environ;
 
 namespace ilaw::host {
 namespace {
 
+// Ends with a null, as posix_spawn reads it.
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+  std::vector<char*> found(texts.size() + 1, nullptr);
+  std::transform(texts.begin(), texts.end(), found.begin(), [](std::string& text) { return text.data(); });
+  return found;
+}
+
 // Exit code of a program, or -1 if it cannot be started.
-int run_program(const std::vector<std::string>& words, const std::vector<std::string>& environment,
-                bool is_quiet) {
-  const auto pointers = [](const std::vector<std::string>& texts) {
-    std::vector<char*> found;
-    for (const std::string& text : texts) found.push_back(const_cast<char*>(text.c_str()));
-    found.push_back(nullptr);
-    return found;
-  };
+int run_program(std::vector<std::string> words, std::vector<std::string>& environment, bool is_quiet) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   if (is_quiet) posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
@@ -61,13 +63,13 @@ int run_python(const std::string& module, const std::vector<std::string>& argume
   if (!std::filesystem::is_directory(package / "ilaw"))
     throw std::runtime_error(package.string() +
                              ": found no such folder, expected the Python package of ilaw");
-  const std::vector<std::string> environment = environment_with(package);
+  std::vector<std::string> environment = environment_with(package);
   std::fflush(nullptr);
   for (const std::string python : {"python3", "/usr/bin/python3"}) {
     if (run_program({python, "-B", "-c", "import " + imports}, environment, true) != exit_done) continue;
     std::vector<std::string> words = {python, "-B", "-m", module};
     words.insert(words.end(), arguments.begin(), arguments.end());
-    return run_program(words, environment, false);
+    return run_program(std::move(words), environment, false);
   }
   throw std::runtime_error("found no Python 3 with " + imports + "; install it with `apt-get install " +
                            debian_packages + "`");

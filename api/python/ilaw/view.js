@@ -373,6 +373,7 @@ const statusTable = STATUS_COLORS.map(rgb);
 async function chooseField(index) {
   const field = run.film && run.film.fields[index];
   state.field = null;
+  $("field").value = index;
   if (field) {
     const nodes = field.nodes ? await open(field.nodes) : null, values = await Channel.open(field.values, 1);
     state.field = { ...field, nodes, channel: values, now: new Float32Array(values.size), isStatus: field.name === "status" };

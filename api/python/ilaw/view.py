@@ -164,13 +164,14 @@ def page_of(run: Run, megabytes: float) -> str:
     data, blocks = data_of(run, megabytes)
     here = Path(__file__).parent
     library = [read_library(THREE / name) for name in ("three.min.js", "examples/js/controls/OrbitControls.js")]
-    scripts = [f"<script>{text}</script>" for text in (*library, (here / "view.js").read_text(encoding="utf-8"))]
-    texts = [f'<script type="text/plain" id="block{k}">{text}</script>' for k, text in enumerate(blocks.texts)]
-    # "</" would end the script.
-    header = json.dumps(finite(data), separators=(",", ":")).replace("</", "<\\/")
-    texts.append(f'<script type="application/json" id="run">{header}</script>')
-    page = (here / "view.html").read_text(encoding="utf-8")
-    return page.replace("@TITLE@", html.escape(run.title)).replace("@SCRIPTS@", "\n".join(texts + scripts))
+    scripts = [f"<script>{text}</script>" for text in library]
+    scripts += [f'<script type="text/plain" id="block{k}">{text}</script>' for k, text in enumerate(blocks.texts)]
+    # "<" of a name must not end or begin a script.
+    header = json.dumps(finite(data), separators=(",", ":")).replace("<", "\\u003c")
+    scripts.append(f'<script type="application/json" id="run">{header}</script>')
+    scripts.append(f"<script>{(here / 'view.js').read_text(encoding='utf-8')}</script>")
+    start, end = (here / "view.html").read_text(encoding="utf-8").split("@SCRIPTS@")
+    return start.replace("@TITLE@", html.escape(run.title)) + "\n".join(scripts) + end
 
 
 def finite(value: Any) -> Any:
