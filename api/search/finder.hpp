@@ -1,8 +1,8 @@
 // finder.hpp - the closest facets of points, and which points are near.
 //
-// All bounds are distances in the axes of the surface, between the points and the facets as the tree has them. A
-// facet is now no farther from there than the strain of the surface, so that bounds are off by at most that, beside
-// the motion of the point since they were taken.
+// All bounds are distances in the axes of the surface, between the points and the facets as the tree has
+// them. A facet is now no farther from there than the strain of the surface, so that bounds are off by at
+// most that, beside the motion of the point since they were taken.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -43,8 +43,8 @@ class Finder {
   void read_counts(ilaw_facets_counts& counts) const;
 
  private:
-  // Facets of which one is the closest, in the order of their least distances from a place; all others are farther
-  // than `outside` from there.
+  // Facets of which one is the closest, in the order of their least distances from a place; all others are
+  // farther than `outside` from there.
   struct Known {
     static constexpr std::size_t most = 12;
     Vec at;
@@ -61,9 +61,10 @@ class Finder {
   bool try_known(const Known& known, std::size_t point, Pair& best, std::int64_t& looked_at) const;
   void try_all(std::size_t point, Pair& best, std::int64_t& looked_at) const;
   void try_facet(std::int32_t facet, Vec p, Pair& best, std::int64_t& looked_at) const;
-  // Whether all points of a box are farther than horizon from the surface and in front of it. Lowers least to a bound
-  // of their distance.
+  // Whether all points of a box are farther than horizon from the surface and in front of it. Lowers least to
+  // a bound of their distance.
   bool is_apart(const Box& points, double horizon, double& least) const;
+  void make_list(double reach);
   void list_near(double horizon, double& least);
 
   Surface surface_;
@@ -78,7 +79,7 @@ class Finder {
   std::vector<std::int64_t> stamps_;  // of the positions that they are of
 
   // The list of near points, and where they were then.
-  std::vector<std::int32_t> near_;
+  std::vector<std::int32_t> near_, longer_;
   std::vector<Vec> listed_;
   bool is_listed_ = false;
   double horizon_ = 0.0, strain_listed_ = 0.0, motion_ = 0.0;

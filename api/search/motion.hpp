@@ -1,4 +1,5 @@
-// motion.hpp - axes that move with a surface, in which a motion of points and surface as one rigid body is none.
+// motion.hpp - axes that move with a surface, in which a motion of points and surface as one rigid body is
+// none.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

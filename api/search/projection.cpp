@@ -69,7 +69,8 @@ Projection project_on_triangle(Vec p, const Corners& x) {
 // A Gauss-Newton step for the closest point; a coordinate that leaves the patch is kept at its edge.
 Place next_place(Vec p, const Corners& x, Place at) {
   const Vec t1 = along_xi(x, at), t2 = along_eta(x, at), rest = p - point_of(x, shape_functions(at));
-  const double m11 = dot(t1, t1), m12 = dot(t1, t2), m22 = dot(t2, t2), r1 = dot(t1, rest), r2 = dot(t2, rest);
+  const double m11 = dot(t1, t1), m12 = dot(t1, t2), m22 = dot(t2, t2), r1 = dot(t1, rest),
+               r2 = dot(t2, rest);
   const double scale = 1.0 / (m11 * m22 - m12 * m12);
   Place step{(m22 * scale) * r1 + (-m12 * scale) * r2, (-m12 * scale) * r1 + (m11 * scale) * r2};
   const Place free{at.xi + step.xi, at.eta + step.eta};

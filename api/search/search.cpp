@@ -31,7 +31,8 @@ bool is_right(const ilaw_facets_setup& setup) {
                            : setup.dimension == 3 ? setup.corner_count == 3 || setup.corner_count == 4
                                                   : false;
   if (!has_corners || !setup.facets || setup.facet_count < 1 || setup.facet_count > most) return false;
-  if (setup.point_count < 0 || setup.point_count > most || (setup.point_count > 0 && !setup.points)) return false;
+  if (setup.point_count < 0 || setup.point_count > most || (setup.point_count > 0 && !setup.points))
+    return false;
   return is_there(setup.position) && are_nodes(setup.facets, setup.facet_count * setup.corner_count, setup) &&
          are_nodes(setup.points, setup.point_count, setup);
 }
@@ -48,8 +49,8 @@ struct Reading {
   int32_t place;
 };
 
-// A point beside a facet is nearest to its edge. Behind the plane of the facet it has to come over the facet before it
-// meets it; in front, it has the distance to go.
+// A point beside a facet is nearest to its edge. Behind the plane of the facet it has to come over the facet
+// before it meets it; in front, it has the distance to go.
 Reading read(const search::Pair& pair, double rim, double rounding) {
   const bool is_on_rim = pair.is_at_border && pair.beside <= rim && pair.along >= -rim;
   if (pair.beside <= rounding || is_on_rim)

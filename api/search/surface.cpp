@@ -36,7 +36,8 @@ Surface::Surface(const ilaw_facets_setup& setup, const Positions& start)
           Nodes& facet = facets.emplace_back();
           for (std::size_t k = 0; k < 4; ++k) {
             const std::size_t corner = std::min<std::size_t>(k, setup.corner_count - 1);
-            const std::int32_t node = setup.facets[f * setup.corner_count + static_cast<std::int64_t>(corner)];
+            const std::int32_t node =
+                setup.facets[f * setup.corner_count + static_cast<std::int64_t>(corner)];
             facet[k] = static_cast<std::uint32_t>(
                 std::lower_bound(model_nodes_.begin(), model_nodes_.end(), node - setup.index_base) -
                 model_nodes_.begin());
@@ -104,7 +105,8 @@ bool Surface::follow(const Positions& positions) {
     const Vec p = positions[model_nodes_[k]];
     Vec& now = now_[k];
     moved = moved || !(p.x == now.x && p.y == now.y && p.z == now.z);
-    most = {std::max(most.x, std::fabs(p.x)), std::max(most.y, std::fabs(p.y)), std::max(most.z, std::fabs(p.z))};
+    most = {std::max(most.x, std::fabs(p.x)), std::max(most.y, std::fabs(p.y)),
+            std::max(most.z, std::fabs(p.z))};
     now = p;
   }
   if (!moved) return false;

@@ -57,7 +57,8 @@ class Surface {
   // ---- now ----
   Projection project_on(std::int32_t facet, Vec p) const {
     const Nodes& n = facets_[static_cast<std::size_t>(facet)];
-    return project(p, {now_[n[0]], now_[n[1]], now_[n[2]], now_[n[3]]}, shapes_[static_cast<std::size_t>(facet)]);
+    return project(p, {now_[n[0]], now_[n[1]], now_[n[2]], now_[n[3]]},
+                   shapes_[static_cast<std::size_t>(facet)]);
   }
   bool is_at_border(std::int32_t facet, const Projection& projection) const {
     const std::array<bool, 4>& border = border_[static_cast<std::size_t>(facet)];
@@ -76,7 +77,8 @@ class Surface {
 
     Vec beside(Vec p) const {
       const Vec from = p - center;
-      return {std::max(std::fabs(dot(from, u)) - half.x, 0.0), std::max(std::fabs(dot(from, v)) - half.y, 0.0),
+      return {std::max(std::fabs(dot(from, u)) - half.x, 0.0),
+              std::max(std::fabs(dot(from, v)) - half.y, 0.0),
               std::max(std::fabs(dot(from, n)) - half.z, 0.0)};
     }
   };

@@ -25,10 +25,9 @@ void Tree::split(const std::vector<Vec>& centers, std::size_t leaf_size, std::in
     return side.y >= side.z ? p.y : p.z;
   };
   const std::int32_t middle = first + (end - first) / 2;
-  std::nth_element(items_.begin() + first, items_.begin() + middle, items_.begin() + end,
-                   [&](std::int32_t a, std::int32_t b) {
-                     return std::pair(along(a), a) < std::pair(along(b), b);
-                   });
+  std::nth_element(
+      items_.begin() + first, items_.begin() + middle, items_.begin() + end,
+      [&](std::int32_t a, std::int32_t b) { return std::pair(along(a), a) < std::pair(along(b), b); });
   split(centers, leaf_size, first, middle);
   nodes_[node].right = static_cast<std::int32_t>(nodes_.size());
   split(centers, leaf_size, middle, end);

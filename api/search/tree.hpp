@@ -1,5 +1,5 @@
-// tree.hpp - a tree of bounding boxes over items: halves of the items along the longest side of their box. Its
-// form is that of the start; boxes follow the items.
+// tree.hpp - a tree of bounding boxes over items: halves of the items along the longest side of their box.
+// Its form is that of the start; boxes follow the items.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

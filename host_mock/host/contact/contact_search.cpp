@@ -132,8 +132,8 @@ void ContactSearch::look_at(std::size_t chunk, const StepView& step) {
     const bool awake = contact >= 0 ? contacts_.must_be_evaluated(static_cast<std::size_t>(contact))
                                     : !law_.may_skip_fresh();
     const double gap = skips ? bounds[i] - setup_.gap_offset(static_cast<int>(first + i)) : 0.0;
-    const bool is_near = awake || !skips || may_touch(gap) ||
-                         setup_.counterpart->is_held(static_cast<int>(first + i));
+    const bool is_near =
+        awake || !skips || may_touch(gap) || setup_.counterpart->is_held(static_cast<int>(first + i));
     is_near_[first + i] = is_near ? 1 : 0;
     near += is_near ? 1 : 0;
     least = gap < least ? gap : least;

@@ -67,7 +67,7 @@ class ContactSearch {
   const Law& law_;
   const ContactArrays& contacts_;
   const bool axes_turn_;
-  const bool finds_near_;       // the counterpart does, instead of the filter
+  const bool finds_near_;        // the counterpart does, instead of the filter
   const double largest_offset_;  // of gaps
   ProximityFilter proximity_;
   bool is_forced_ = true;  // the list of the counterpart must be new

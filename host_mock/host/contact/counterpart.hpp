@@ -104,8 +104,8 @@ class Counterpart {
   virtual void gap_bounds(int first, int count, const Dofs& u, double time, double* bounds) const;
   // Takes the displacements that contact points and gap bounds are asked for from here on.
   virtual void follow(const Dofs& /*u*/) {}
-  // A surface that finds the nodes near it by itself (proximity_filter.hpp does it for the others): whether its
-  // list is a new one, and the gap bound up to which nodes are in it.
+  // A surface that finds the nodes near it by itself (proximity_filter.hpp does it for the others): whether
+  // its list is a new one, and the gap bound up to which nodes are in it.
   virtual bool finds_near() const { return false; }
   virtual bool find_near(const Dofs& /*u*/, const Approach& /*approach*/) { return true; }
   virtual double horizon() const { return 0.0; }

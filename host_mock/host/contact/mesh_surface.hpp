@@ -11,8 +11,9 @@
 
 namespace ilaw::host {
 
-// A point is projected on the closest facet (ilaw/search.h), a bilinear patch of four nodes or a triangle: the
-// contact's partners are these nodes, with the shape functions there as weights, so that impulses balance.
+// A point is projected on the closest facet (ilaw/search.h), a bilinear patch of four nodes or a triangle:
+// the contact's partners are these nodes, with the shape functions there as weights, so that impulses
+// balance.
 //
 // A point beside the border of the surface is not in contact. There the facet goes on a little: rounding
 // would else decide whether the nodes at the edge of a stack are held. It goes on for 1e-3 of an edge for a
