@@ -13,7 +13,7 @@ constexpr double most_strain = 0.05, kept_reach = 0.5, most_motion = 0.5, most_m
                  least_margin = 1e-3;
 // Steps of the given reach that a list of near points should last for.
 constexpr double steps_ahead = 8.0;
-constexpr std::size_t group_size = 32;
+constexpr std::size_t group_size = 16;
 
 Positions start_of(const ilaw_facets_setup& setup) { return {setup.dimension, setup.position, {}}; }
 
@@ -48,6 +48,7 @@ Finder::Finder(const ilaw_facets_setup& setup)
       stamps_(nodes_.size(), -1),
       listed_(nodes_.size()) {
   near_.reserve(nodes_.size());
+  longer_.reserve(nodes_.size());
   group_boxes_.reserve(groups_.size());
 }
 
@@ -97,11 +98,7 @@ void Finder::find_near(ilaw_facets_nearby& nearby) {
   const bool is_due = nearby.forced != 0 || !is_listed_ || !(motion_ + nearby.reach < horizon_) ||
                       !(motion_ <= most_motion * edge);
   if (is_due) {
-    const double margin = std::clamp(steps_ahead * nearby.reach, least_margin * edge, most_margin * edge);
-    double least = infinity;
-    horizon_ = nearby.reach + margin;
-    list_near(horizon_, least);
-    if (near_.empty()) horizon_ = std::max(horizon_, least);
+    make_list(nearby.reach);
     listed_ = seen_;
     strain_listed_ = surface_.strain();
     motion_ = 2.0 * surface_.strain();
@@ -113,6 +110,27 @@ void Finder::find_near(ilaw_facets_nearby& nearby) {
   nearby.points = near_.data();
   nearby.horizon = horizon_;
   nearby.slack = std::min(horizon_, most_motion * edge) - motion_;
+}
+
+// The longer the margin, the longer the list lasts, and the longer it is. A list of none lasts until the
+// first point may be there, so that a quarter of the margin is worth a try.
+void Finder::make_list(double reach) {
+  const double edge = surface_.mean_edge();
+  double margin = std::clamp(steps_ahead * reach, least_margin * edge, most_margin * edge), least = infinity;
+  list_near(reach + margin, least);
+  if (!near_.empty()) {
+    std::swap(near_, longer_);
+    double closer = infinity;
+    list_near(reach + 0.25 * margin, closer);
+    if (near_.empty()) {
+      margin *= 0.25;
+      least = closer;
+    } else {
+      std::swap(near_, longer_);
+    }
+  }
+  horizon_ = reach + margin;
+  if (near_.empty()) horizon_ = std::max(horizon_, least);
 }
 
 void Finder::list_near(double horizon, double& least) {
@@ -278,12 +296,14 @@ void Finder::try_facet(std::int32_t facet, Vec p, Pair& best, std::int64_t& look
 
 // Whether the closest facet is among the known ones.
 bool Finder::try_known(const Known& known, std::size_t point, Pair& best, std::int64_t& looked_at) const {
-  const double doubt = this->doubt() + norm(seen_[point] - known.at);
+  const double doubt = this->doubt(), moved = doubt + norm(seen_[point] - known.at);
   for (std::size_t k = 0; k < known.count; ++k) {
-    if (known.lower[k] - doubt > best.at.distance) break;
+    if (known.lower[k] - moved > best.at.distance) break;
+    if (square(surface_.slab(known.facet[k]).beside(seen_[point])) > square(best.at.distance + doubt))
+      continue;
     try_facet(known.facet[k], now_[point], best, looked_at);
   }
-  return best.at.distance < known.outside - doubt;
+  return best.at.distance < known.outside - moved;
 }
 
 void Finder::try_all(std::size_t point, Pair& best, std::int64_t& looked_at) const {

@@ -64,6 +64,7 @@ class Finder {
   // Whether all points of a box are farther than horizon from the surface and in front of it. Lowers least to
   // a bound of their distance.
   bool is_apart(const Box& points, double horizon, double& least) const;
+  void make_list(double reach);
   void list_near(double horizon, double& least);
 
   Surface surface_;
@@ -78,7 +79,7 @@ class Finder {
   std::vector<std::int64_t> stamps_;  // of the positions that they are of
 
   // The list of near points, and where they were then.
-  std::vector<std::int32_t> near_;
+  std::vector<std::int32_t> near_, longer_;
   std::vector<Vec> listed_;
   bool is_listed_ = false;
   double horizon_ = 0.0, strain_listed_ = 0.0, motion_ = 0.0;

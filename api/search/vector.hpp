@@ -22,6 +22,7 @@ inline double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Vec cross(Vec a, Vec b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+inline double square(double a) { return a * a; }
 inline double square(Vec a) { return dot(a, a); }
 inline double norm(Vec a) { return std::sqrt(square(a)); }
 inline Vec unit(Vec a) {

@@ -53,15 +53,6 @@ Tally expect_same_bits(const json& source) {
   return integrator.tally();
 }
 
-// The nearest facets of a mesh surface are known within a distance, which a node may go in one step.
-TEST(ProximityFilter, IsRefreshedWhereAStepIsLongerThanTheWayThatASurfaceIsKnownFor) {
-  const double dt = 1.0, speed = 1.0, slower = 0.5, way = 0.4;
-  ProximityFilter filter;
-  EXPECT_TRUE(filter.refresh_due(dt, speed, speed, way));
-  EXPECT_TRUE(filter.refresh_due(dt, speed, slower, way));
-  EXPECT_FALSE(filter.refresh_due(dt, 0.1 * way, 0.1 * way, way));
-}
-
 // ---- shipped scenes -------------------------------------------------------------------------------------
 
 json shortened(const fs::path& file) {

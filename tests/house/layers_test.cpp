@@ -45,6 +45,10 @@ std::string complaint_of_api(const std::string& inside, const std::string& heade
     return "the interface knows no host";
   if (quoted && first_folder(header) == "check" && first_folder(inside) != "check")
     return "the interface knows no checker";
+  const std::set<std::string> of_search = {"ilaw/ilaw.h", "ilaw/search.h", "ilaw/arrays.hpp",
+                                           "ilaw/sized.hpp"};
+  if (inside.starts_with("search/") && header.starts_with("ilaw/") && !of_search.contains(header))
+    return "the search knows neither laws nor their solver";
   const bool of_laws = inside.starts_with("include/ilaw/kit");
   return !of_laws && header.starts_with("ilaw/kit") ? "the loader knows no kit" : "";
 }
@@ -206,6 +210,10 @@ TEST(Layers, IncludesThatRunUpAreSeen) {
       {"api/loader/library.cpp", "check/check.hpp", true, false},
       {"api/loader/library.cpp", "base/files.hpp", true, false},
       {"api/loader/library.cpp", "ilaw/kit.hpp", false, false},
+      {"api/search/search.cpp", "ilaw/search.h", false, true},
+      {"api/search/search.cpp", "ilaw/coupled.h", false, false},
+      {"api/search/finder.cpp", "base/files.hpp", true, false},
+      {"host_mock/host/contact/mesh_surface.cpp", "ilaw/search.h", false, true},
       {"api/include/ilaw/kit/plugin.hpp", "ilaw/kit/detail/instance.hpp", false, true},
       {"plugins/tie/tie.cpp", "ilaw/kit/detail/gather.hpp", false, false},
       {"plugins/tie/tie.cpp", "ilaw/kit/window.hpp", false, true},

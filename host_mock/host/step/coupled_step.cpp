@@ -43,16 +43,19 @@ CoupledStep::CoupledStep(const Model& model, Interfaces& interfaces)
 // solved again with a larger one: whether that happens does not depend on which contacts are active.
 const ilaw_coupled_report& CoupledStep::solve(StepView step, const double* inverse_mass, Dofs& v) {
   const double speed = std::max(step.speed_before, step.speed_after);
-  const Dofs v_free = v;
   step.speed_after = 2.0 * speed;
+  open(step);
+  if (!nodes_.empty()) v_free_ = v;
   for (;;) {
-    v = v_free;
-    open(step);
     solve_groups(step, speed, inverse_mass, v);
-    if (report_.message && forget_forces()) continue;  // from rest, then
-    const double fastest = largest_speed(v, model_.dimension());
-    if (!(fastest > step.speed_after)) return report_;
-    step.speed_after = 2.0 * fastest;
+    if (nodes_.empty()) return report_;
+    if (!(report_.message && forget_forces())) {  // else once more, from rest
+      const double fastest = largest_speed(v, model_.dimension());
+      if (!(fastest > step.speed_after)) return report_;
+      step.speed_after = 2.0 * fastest;
+    }
+    v = v_free_;
+    open(step);
   }
 }
 

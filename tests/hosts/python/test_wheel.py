@@ -79,7 +79,7 @@ def test_all_laws_and_libraries_are_in_it(wheel):
     laws = {law for law in laws if not law.startswith("template_")}
     assert len(laws) >= 12
     wanted = {f"ilaw/lib/ilaw/{law}.{ending}" for law in laws for ending in ("so", "json")}
-    wanted |= {"ilaw/lib/libilaw_loader.so.1", "ilaw/lib/libilaw_coupled.so.1"}
+    wanted |= {"ilaw/lib/libilaw_loader.so.1", "ilaw/lib/libilaw_coupled.so.1", "ilaw/lib/libilaw_search.so.1"}
     assert {name for name in names if name.startswith("ilaw/lib/")} == wanted
     assert {"ilaw/py.typed", f"ilaw-{VERSION}.dist-info/LICENSE"} <= names
 
