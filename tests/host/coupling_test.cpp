@@ -261,6 +261,34 @@ TEST(Column, WarnsWhenOneOfTwoIsTooLong) {
   EXPECT_LT(of_both.tally().coupling_residual_max, 10.0 * residual);
 }
 
+// A point falls into a groove of two planes, which are two interfaces at one node: it rises in the middle, to
+// e^2 of its height by the first order of the step.
+TEST(Groove, ThrowsThePointBackInTheMiddle) {
+  constexpr double e = 0.8, height = 0.3, g = 10.0;
+  const double s = std::sqrt(0.5), speed = std::sqrt(2.0 * g * height);
+  for (const double h : {3.1e-3, 1e-3, 2.3e-4}) {
+    const json law = {{"restitution", e}};
+    auto [scene, integrator] =
+        simulation_of(until(1, h,
+                            scene_of_points({point(1, {0, height})},
+                                            {law_on("all", plane({0, 0}, {s, s}), "contact", law),
+                                             law_on("all", plane({0, 0}, {-s, s}), "contact", law)},
+                                            {gravity({0, -g})})));
+    double highest = 0.0, aside = 0.0;
+    bool rises = false;
+    while (integrator.steps() < scene.steps) {
+      integrator.step();
+      const Dofs& v = integrator.velocity();
+      aside = std::max(aside, std::fabs(v[0]));
+      if (rises && v[1] < 0.0) break;
+      rises = rises || v[1] > 0.0;
+      if (rises) highest = std::max(highest, integrator.displacement()[1] + height);
+    }
+    EXPECT_NEAR(highest, e * e * height, 2.0 * h * speed) << h;
+    EXPECT_LE(aside, 1e-12) << h;
+  }
+}
+
 // A spring so stiff that it throws the mass back farther at every step.
 TEST(RunWarnings, TellThatAPenaltyPutsInEnergy) {
   const auto dropped = [](double stiffness) {
