@@ -4,6 +4,7 @@
 #include <ilaw/decimal_text.hpp>
 
 #include <cmath>
+#include <memory>
 #include <set>
 #include <string>
 
@@ -276,22 +277,37 @@ const ilaw_plugin* checked_plugin(const std::string& file, const ilaw_plugin* gi
   return &plugin;
 }
 
-std::shared_ptr<const instance_description> instance_descriptions::checked(const instance_origin& origin,
-                                                                           const ilaw_setup& setup,
-                                                                           const ilaw_instance_info& given) {
+instance_description* instance_descriptions::checked(const instance_origin& origin, const ilaw_setup& setup,
+                                                     const ilaw_instance_info& given) {
   constexpr std::size_t most = 8;  // a library whose instances all differ must not fill the memory
   const std::set<std::string> per_node = given_per_node(setup);
   const std::scoped_lock lock(guard_);
-  for (const auto& one : known_)
+  known_.reserve(most);
+  for (instance_description* one : known_)
     if (one->law == &origin.law && one->dimension == setup.dimension && one->per_node == per_node &&
-        std::memcmp(&one->given, &given, sizeof given) == 0 && one->kept.is_unchanged())
+        std::memcmp(&one->given, &given, sizeof given) == 0 && one->kept.is_unchanged()) {
+      ++one->users;
       return one;
-  const auto made = std::make_shared<instance_description>(
-      instance_description{&origin.law, setup.dimension, per_node, given, given, {}});
+    }
+  auto made = std::make_unique<instance_description>(
+      instance_description{&origin.law, setup.dimension, per_node, given, given});
   check_instance(origin, *made);
-  if (known_.size() == most) known_.erase(known_.begin());
-  known_.push_back(made);
-  return made;
+  if (known_.size() == most) {
+    if (--known_.front()->users == 0) delete known_.front();
+    known_.erase(known_.begin());
+  }
+  ++made->users;
+  known_.push_back(made.get());
+  return made.release();
+}
+
+void instance_descriptions::give_back(instance_description* one) {
+  const std::scoped_lock lock(guard_);
+  if (--one->users == 0) delete one;
+}
+
+instance_descriptions::~instance_descriptions() {
+  for (const instance_description* one : known_) delete one;
 }
 
 }  // namespace ilaw::loading

@@ -9,7 +9,6 @@
 #include <ilaw/ilaw.h>
 
 #include <cstdint>
-#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
@@ -33,19 +32,27 @@ struct instance_description {
   std::uint32_t dimension;
   std::set<std::string> per_node;  // parameters that the host gave so
   ilaw_instance_info given, info;
-  storage kept;
+  storage kept = {};
+  long users = 1;
 };
 
-// Those of a library that are known. Instances that say the same are checked once: a host may make one for
-// each node.
+// Those of a library. Instances that say the same are checked once: a host may make one for each node.
+// Counted by hand, since std::shared_ptr needs glibc 2.32.
 class instance_descriptions {
  public:
-  std::shared_ptr<const instance_description> checked(const instance_origin& origin, const ilaw_setup& setup,
-                                                      const ilaw_instance_info& given);
+  instance_descriptions() = default;
+  ~instance_descriptions();
+  instance_descriptions(const instance_descriptions&) = delete;
+  instance_descriptions& operator=(const instance_descriptions&) = delete;
+
+  // To be given back.
+  instance_description* checked(const instance_origin& origin, const ilaw_setup& setup,
+                                const ilaw_instance_info& given);
+  void give_back(instance_description* one);
 
  private:
   std::mutex guard_;
-  std::vector<std::shared_ptr<const instance_description>> known_;
+  std::vector<instance_description*> known_;  // each used here, too
 };
 
 }  // namespace ilaw::loading

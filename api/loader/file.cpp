@@ -7,11 +7,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cinttypes>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <string_view>
 
 namespace ilaw::loading {
 namespace {
@@ -47,22 +48,25 @@ std::string canonical(const std::string& path) {
   return real ? real.get() : "";
 }
 
-// Source of the format: proc_pid_maps(5).
+// Source of the format: proc_pid_maps(5). Not by sscanf, a new symbol of glibc 2.38.
 std::string mapped_file(const void* address) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> maps(std::fopen("/proc/self/maps", "re"),
                                                              &std::fclose);
   const auto wanted = reinterpret_cast<std::uintptr_t>(address);
-  char* line = nullptr;
-  std::size_t room = 0;
-  const char* found = nullptr;
-  while (maps && !found && getline(&line, &room, maps.get()) > 0) {
+  struct line {
+    char* text = nullptr;
+    std::size_t room = 0;
+    ~line() { std::free(text); }
+  } read;
+  while (maps && getline(&read.text, &read.room, maps.get()) > 0) {
+    const std::string_view text(read.text, std::strcspn(read.text, "\n"));
     std::uintptr_t first = 0, end = 0;
-    const char* path = std::strchr(line, '/');
-    if (std::sscanf(line, "%" SCNxPTR "-%" SCNxPTR, &first, &end) == 2 && wanted >= first && wanted < end)
-      found = path ? path : "";
+    const char* dash = std::from_chars(text.begin(), text.end(), first, 16).ptr;
+    if (dash != text.end()) std::from_chars(dash + 1, text.end(), end, 16);
+    if (wanted >= first && wanted < end)
+      return std::string(text.substr(std::min(text.find('/'), text.size())));
   }
-  const std::unique_ptr<char, decltype(&std::free)> owner(line, &std::free);
-  return found ? std::string(found, std::strcspn(found, "\n")) : "";
+  return "";
 }
 
 std::vector<std::string> names_in(const std::string& folder) {

@@ -21,7 +21,7 @@ struct ilaw_interface {
   ilaw_library* library;
   const ilaw_law* law;
   ilaw_instance* instance = nullptr;
-  std::shared_ptr<const ilaw::loading::instance_description> description = nullptr;
+  ilaw::loading::instance_description* description = nullptr;
 };
 
 namespace {
@@ -225,6 +225,7 @@ void ILAW_CALL ilaw_interface_destroy(ilaw_interface* interface) {
   if (!interface) return;
   ilaw_library* library = interface->library;
   interface->law->destroy(interface->instance);
+  library->instances.give_back(interface->description);
   delete interface;
   ilaw::loading::release(*library);
 }

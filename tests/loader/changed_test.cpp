@@ -34,7 +34,7 @@ class Changed : public testing::Test {
                         ", expected the file of " + size + " until its last handle and interface are closed";
 };
 
-TEST_F(Changed, LibraryIsRefusedUntilTheOldOneIsGone) {
+TEST_F(Changed, RefusesUntilTheOldOneIsGone) {
   install(file, 1);
   auto old = std::make_unique<ilaw::library>(file.string());
   install(file, 2);
@@ -44,7 +44,7 @@ TEST_F(Changed, LibraryIsRefusedUntilTheOldOneIsGone) {
   EXPECT_EQ(answer(file), "Number 2");
 }
 
-TEST_F(Changed, LibraryIsRefusedWhenWrittenTo) {
+TEST_F(Changed, RefusesFilesWrittenTo) {
   install(file, 1);
   auto old = std::make_unique<ilaw::library>(file.string());
   write_over(file, bytes_of(2), 0);
@@ -53,7 +53,7 @@ TEST_F(Changed, LibraryIsRefusedWhenWrittenTo) {
   EXPECT_EQ(answer(file), "Number 2");
 }
 
-TEST_F(Changed, LibraryWithAnotherNameIsTheSame) {
+TEST_F(Changed, SharesHardLinks) {
   install(file, 1);
   const ilaw::library old(file.string());
   const fs::path other = file.parent_path() / "other.so";
@@ -65,7 +65,7 @@ TEST_F(Changed, LibraryWithAnotherNameIsTheSame) {
 }
 
 // dlclose leaves it loaded, and dlopen would give it again by its path.
-TEST_F(Changed, LibraryThatCannotBeUnloadedIsRefused) {
+TEST_F(Changed, RefusesWhenTheOldOneStaysLoaded) {
   fs::copy_file(ILAW_TEST_PLUGINS "/kept.so", file);
   EXPECT_EQ(answer(file), "Nothing");
   EXPECT_EQ(answer(file), "Nothing");
@@ -75,7 +75,7 @@ TEST_F(Changed, LibraryThatCannotBeUnloadedIsRefused) {
 }
 
 // A host that does its own dlopen, or another loader: each has its own list.
-TEST_F(Changed, LibraryOfAnotherPartOfTheProcessIsRefused) {
+TEST_F(Changed, RefusesWhenOthersLoadedTheOldOne) {
   install(file, 1);
   void* foreign = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   ASSERT_NE(foreign, nullptr);
@@ -92,13 +92,13 @@ TEST_F(Changed, LibraryOfAnotherPartOfTheProcessIsRefused) {
 }
 
 // By the path of a descriptor, /proc/self/fd/3, it would not find the other one.
-TEST_F(Changed, LibraryFindsOthersByItsOrigin) {
+TEST_F(Changed, LoadsLibrariesWithOrigin) {
   for (const char* name : {"origin.so", "libneeded.so"})
     fs::copy_file(std::string(ILAW_TEST_PLUGINS "/") + name, folder.path / name);
   EXPECT_EQ(answer(folder.path / "origin.so"), "Nothing");
 }
 
-TEST_F(Changed, LibraryThatEveryUserMayWriteToIsRefused) {
+TEST_F(Changed, RefusesFilesThatAllMayWrite) {
   install(file, 1);
   fs::permissions(file, fs::perms(0666));
   const std::string said =
@@ -110,7 +110,7 @@ TEST_F(Changed, LibraryThatEveryUserMayWriteToIsRefused) {
 }
 
 // Where every user may rename a folder, he may put his own in its place.
-TEST_F(Changed, FolderBelowOneThatEveryUserMayWriteToIsNotSearched) {
+TEST_F(Changed, SearchesNoFolderBelowAWritableOne) {
   const fs::path top = fs::canonical(folder.path), in = top / "deep" / "in", link = top / "link";
   fs::create_directories(in);
   fs::create_directory_symlink(in, link);

@@ -4,6 +4,7 @@
 
 #include "support/program.hpp"
 
+#include <dlfcn.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
@@ -11,6 +12,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <string>
 
@@ -122,6 +124,27 @@ TEST_F(Searched, SharedLoaderLooksBesideItself) {
   const std::string wanted = (folder / "lib" / "ilaw").string();
   EXPECT_THAT(output_of(preload + " " ILAW_HOSTS "/search_host_shared"), HasSubstr(wanted));
   EXPECT_THAT(output_of(ILAW_HOSTS "/search_host_shared"), Not(HasSubstr(wanted)));
+}
+
+// Loaded by a relative path, which means nothing once the program is in another folder.
+TEST_F(Searched, LooksBesideAPlugin) {
+  fs::create_directory(folder / "plugins");
+  fs::copy_file(ILAW_TEST_PLUGINS "/search_plugin.so", folder / "plugins" / "search_plugin.so");
+  const fs::path before = fs::current_path();
+  fs::current_path(folder);
+  void* plugin = dlopen("plugins/search_plugin.so", RTLD_NOW | RTLD_LOCAL);
+  fs::current_path(before);
+  ASSERT_NE(plugin, nullptr) << dlerror();
+  std::size_t (*path)(char*, std::size_t) = nullptr;
+  void* symbol = dlsym(plugin, "plugin_search_path");
+  std::memcpy(&path, &symbol, sizeof path);
+  ASSERT_NE(path, nullptr);
+  std::string text(path(nullptr, 0), '\0');
+  path(text.data(), text.size());
+  const std::string at = fs::canonical(folder).string();
+  EXPECT_THAT(text, HasSubstr(":" + at + "/plugins/ilaw:" + at + "/lib/ilaw:"));
+  EXPECT_THAT(ilaw::search_path(), Not(HasSubstr(at + "/plugins")));
+  dlclose(plugin);
 }
 
 // Its interface outlives main, and with it whatever the loader has. Freed memory reads as rubbish.
