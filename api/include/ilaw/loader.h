@@ -6,9 +6,11 @@
  * Search path for a library given by name ("contact" -> "contact.so"), first match wins:
  *   1. the folders of the environment variable ILAW_PATH, separated by ':' (empty and relative entries
  *      are skipped; the variable is not read in a set-uid program),
- *   2. the installed folder: lib/ilaw beside the bin/ of the running program (not in a set-uid program),
- *      then that fixed when the loader was built, /usr/local/lib/ilaw and /usr/lib/ilaw.
- * A folder that every user may write to is not searched; the message of an opening that fails says so.
+ *   2. the installed folder: lib/ilaw beside the bin/ of the running program, then ilaw beside the shared
+ *      library that has the loader and ../lib/ilaw from there (none of these in a set-uid program), then that
+ *      fixed when the loader was built, /usr/local/lib/ilaw and /usr/lib/ilaw.
+ * A folder that every user may write to, or may replace by another, is not searched; the message of an
+ * opening that fails says so. A library that every user may write to is refused.
  * A text with a '/' in it is an explicit path; anything else is a name: letters, digits, '_', '-', '+', '.',
  * the first not '.'. A host that has names from an input file opens them by ilaw_library_open_named.
  *
@@ -43,7 +45,8 @@ typedef struct ilaw_interface ilaw_interface;
 
 /* Opens a library by name or explicit path, checks its whole description, gives *library. Where a JSON file
  * describes the library (see ilaw_library_read_description), both must say the same.
- * Opening the same file again gives the same object.
+ * Opening the same file again gives the same object. A file that changed since, or that another one took the
+ * place of, is refused until the last handle and interface are closed.
  * Returns ILAW_OK, ILAW_INVALID_ARGUMENT, ILAW_NOT_FOUND, ILAW_BAD_LIBRARY, ILAW_OUT_OF_MEMORY. */
 ilaw_result ILAW_CALL ilaw_library_open(const char* name_or_path, ilaw_library** library, char* message,
                                         size_t message_size);
