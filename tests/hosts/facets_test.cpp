@@ -319,10 +319,10 @@ TEST(Facets, NearListsLeaveNobodyOut) {
   Random draw(34);
   std::int64_t left_out = 0, kept = 0;
   for (int scene = 0; scene < 12; ++scene) {
-    Searched all = wavy(draw, 40, 1.0, 0.1);
-    for (int k = 0; k < 40; ++k) add_point(all, {draw(2.0, 4.0), draw(2.0, 4.0), draw(2.5, 3.0)});
+    Searched all = wavy(draw, 40, 1.0, 0.01);
+    for (int k = 0; k < 40; ++k) add_point(all, {draw(2.0, 4.0), draw(2.0, 4.0), draw(1.5, 2.5)});
     all.open();
-    const double size = draw.decades(-3.0, -1.0), reach = draw.decades(-3.0, -0.5);
+    const double size = draw.decades(-4.0, -2.0), reach = draw.decades(-3.0, -0.5);
     for (int step = 0; step < 60; ++step) {
       const Point common{draw(-1.0, 1.0), draw(-1.0, 1.0), draw(-1.0, 1.0)};
       for (Point& x : all.now) x = x + common;
