@@ -200,7 +200,9 @@ TEST(Facets, AreTheClosestOfAll) {
   }
   int beside = 0, over = 0;
   for (int step = 0; step < 60; ++step) {
-    shake(all, draw, step % 10 == 9 ? 0.3 : 0.01);
+    if (step % 10 == 9) shake(all, draw, 0.3);
+    for (const std::int32_t point : all.points)  // the facets stay, and the points go from one to the next
+      all.now[static_cast<std::size_t>(point)][step < 30 ? 0 : 1] += step % 20 < 10 ? 0.15 : -0.15;
     all.update();
     const Pairs found = all.all();
     std::vector<std::int32_t> best(all.points.size());
@@ -317,14 +319,16 @@ TEST(Facets, NearListsLeaveNobodyOut) {
   Random draw(34);
   std::int64_t left_out = 0, kept = 0;
   for (int scene = 0; scene < 12; ++scene) {
-    Searched all = wavy(draw, 40, 1.0, 0.1);
-    for (int k = 0; k < 40; ++k) add_point(all, {draw(0.0, 6.0), draw(0.0, 6.0), draw(1.5, 2.5)});
+    Searched all = wavy(draw, 40, 1.0, 0.01);
+    for (int k = 0; k < 40; ++k) add_point(all, {draw(2.0, 4.0), draw(2.0, 4.0), draw(1.5, 2.5)});
     all.open();
-    const double size = draw.decades(-3.0, -1.0), reach = draw.decades(-3.0, -0.5);
+    const double size = draw.decades(-4.0, -2.0), reach = draw.decades(-3.0, -0.5);
     for (int step = 0; step < 60; ++step) {
       const Point common{draw(-1.0, 1.0), draw(-1.0, 1.0), draw(-1.0, 1.0)};
       for (Point& x : all.now) x = x + common;
-      shake(all, draw, size);
+      if (scene % 2 == 0) shake(all, draw, size);
+      for (const std::int32_t point : all.points)
+        all.now[static_cast<std::size_t>(point)][2] -= step < 45 ? 0.05 : -0.04;
       all.update();
       const ilaw_facets_nearby nearby = all.near(reach);
       kept += nearby.is_new == 0 ? 1 : 0;
