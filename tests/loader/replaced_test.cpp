@@ -336,7 +336,7 @@ std::vector<Command> shrunk(std::vector<Command> commands) {
     std::vector<Command> fewer = commands;
     fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(at));
     if (fault_of(fewer).empty()) continue;
-    commands = fewer;
+    commands.swap(fewer);
     at = commands.size();
   }
   return commands;
