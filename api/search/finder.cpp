@@ -109,18 +109,19 @@ void Finder::find_near(ilaw_facets_nearby& nearby) {
   nearby.count = static_cast<std::int64_t>(near_.size());
   nearby.points = near_.data();
   nearby.horizon = horizon_;
-  nearby.slack = std::min(horizon_, most_motion * edge) - motion_;
+  nearby.slack = near_.empty() ? std::min({horizon_, most_motion * edge, turn_}) - motion_ : 0.0;
 }
 
 // The longer the margin, the longer the list lasts, and the longer it is. A list of none lasts until the
 // first point may be there, so that a quarter of the margin is worth a try.
 void Finder::make_list(double reach) {
   const double edge = surface_.mean_edge();
-  double margin = std::clamp(steps_ahead * reach, least_margin * edge, most_margin * edge), least = infinity;
+  double margin = std::clamp(steps_ahead * reach, least_margin * edge, most_margin * edge);
+  Apart least;
   list_near(reach + margin, least);
   if (!near_.empty()) {
     std::swap(near_, longer_);
-    double closer = infinity;
+    Apart closer;
     list_near(reach + 0.25 * margin, closer);
     if (near_.empty()) {
       margin *= 0.25;
@@ -130,10 +131,11 @@ void Finder::make_list(double reach) {
     }
   }
   horizon_ = reach + margin;
-  if (near_.empty()) horizon_ = std::max(horizon_, least);
+  turn_ = least.turn;
+  if (near_.empty()) horizon_ = std::max(horizon_, least.distance);
 }
 
-void Finder::list_near(double horizon, double& least) {
+void Finder::list_near(double horizon, Apart& least) {
   groups_.fit(group_boxes_, [&](std::int32_t k) { return box_of(seen_[static_cast<std::size_t>(k)]); });
   near_.clear();
   std::array<std::int32_t, Tree::most_depth> stack;
@@ -163,7 +165,9 @@ double least_along(const Box& points, const Box& box, const Box& normals) {
          least(low.z, high.z, normals.low.z, normals.high.z);
 }
 
-bool Finder::is_apart(const Box& points, double horizon, double& least) const {
+// A facet whose nodes move by m turns by 4 m/L at most, L being its shortest edge; twice that is allowed for
+// skewed ones. It turns its back to a point at the distance d, c above it, from m (8 d/L + 2) = c on.
+bool Finder::is_apart(const Box& points, double horizon, Apart& least) const {
   constexpr int most_visits = 64;  // else halves of the points are looked at
   const Tree& tree = surface_.tree();
   const double doubt = this->doubt(), enough = horizon + doubt;
@@ -176,13 +180,18 @@ bool Finder::is_apart(const Box& points, double horizon, double& least) const {
     n = most_square(points, surface_.box(n + 1)) <= most_square(points, surface_.box(right)) ? n + 1 : right;
   }
   const double far = std::sqrt(most) + 2.0 * doubt;
-  double bound = infinity;
+  Apart bound;
   const auto passes = [&](const Box& box, const Box& normals, bool& is_done) {
     const double distance = std::sqrt(least_square(points, box));
     is_done = distance > far;  // not the closest one of any
     if (is_done) return true;
-    is_done = distance > enough && least_along(points, box, normals) > doubt;
-    if (is_done) bound = std::min(bound, distance);
+    const double above = least_along(points, box, normals) - doubt;
+    is_done = distance > enough && above > 0.0;
+    if (is_done) {
+      const double farthest = std::sqrt(most_square(points, box));
+      bound.distance = std::min(bound.distance, distance);
+      bound.turn = std::min(bound.turn, above / (8.0 * farthest / surface_.shortest_edge() + 2.0));
+    }
     return distance > enough;
   };
   std::array<std::int32_t, Tree::most_depth> stack;
@@ -207,7 +216,8 @@ bool Finder::is_apart(const Box& points, double horizon, double& least) const {
       if (!is_done) return false;
     }
   }
-  least = std::min(least, bound - doubt);
+  least.distance = std::min(least.distance, bound.distance - doubt);
+  least.turn = std::min(least.turn, bound.turn);
   return true;
 }
 

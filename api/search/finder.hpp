@@ -55,6 +55,11 @@ class Finder {
     std::array<double, most> lower;
   };
   class Gathering;
+  // Points that are apart: their least distance, and the least motion of nodes that could turn a facet's back
+  // to one of them.
+  struct Apart {
+    double distance = infinity, turn = infinity;
+  };
 
   double doubt() const;
   void look_around(Known& known, Vec place, std::int64_t& looked_at) const;
@@ -63,9 +68,9 @@ class Finder {
   void try_facet(std::int32_t facet, Vec p, Pair& best, std::int64_t& looked_at) const;
   // Whether all points of a box are farther than horizon from the surface and in front of it. Lowers least to
   // a bound of their distance.
-  bool is_apart(const Box& points, double horizon, double& least) const;
+  bool is_apart(const Box& points, double horizon, Apart& least) const;
   void make_list(double reach);
-  void list_near(double horizon, double& least);
+  void list_near(double horizon, Apart& least);
 
   Surface surface_;
   std::vector<std::int32_t> nodes_;  // of the points
@@ -82,7 +87,7 @@ class Finder {
   std::vector<std::int32_t> near_, longer_;
   std::vector<Vec> listed_;
   bool is_listed_ = false;
-  double horizon_ = 0.0, strain_listed_ = 0.0, motion_ = 0.0;
+  double horizon_ = 0.0, turn_ = 0.0, strain_listed_ = 0.0, motion_ = 0.0;
 
   std::int64_t updates_ = 0, refreshes_ = 0, refits_ = 0;
   std::atomic<std::int64_t> pairs_{0}, facets_{0};

@@ -145,7 +145,7 @@ TEST(Program, NamesWhatItDoesNotKnow) {
   };
   EXPECT_EQ(
       first_line("rnu"),
-      "ilaw: found 'rnu', expected one of run, plot, table, converge, study, stress, list, describe, check, "
+      "ilaw: found 'rnu', expected one of run, plot, view, table, converge, study, stress, list, describe, check, "
       "bench, --help, --version");
   EXPECT_EQ(
       first_line("run " + ball + " --outt here"),

@@ -67,7 +67,8 @@ typedef struct ilaw_facets_nearby {
   const int32_t* points; /* out: by number of the point from 0 on, in groups of neighbors; until the next
                             call. All other points have a gap above the horizon */
   double horizon;        /* out: gap up to which points are in the list that was made last */
-  double slack;          /* out: the list is complete while motion from here on plus reach stay below */
+  double slack; /* out: while the motion of each node from here on, and reach, stay below in sum, the list
+                   need not be asked for. 0 where it is not empty */
 } ilaw_facets_nearby;
 
 /* Pairs of some points, at the positions of the last update. Null outputs are left out. */

@@ -6,6 +6,8 @@
 #include <ilaw/arrays.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -27,7 +29,7 @@ void check(ilaw_result code) {
 MeshSurface::MeshSurface(const Model& model, std::vector<int> nodes, const NodeSet& surface)
     : Counterpart(model, std::move(nodes), surface.nodes),
       facets_(surface.facets),
-      is_listed_(nodes_.size()),
+      is_listed_(nodes_.size(), std::uint8_t{1}),  // until a list is made
       held_(nodes_.size()) {
   ilaw_facets_setup setup{};
   setup.struct_size = sizeof setup;
@@ -93,7 +95,8 @@ double MeshSurface::rim(int node_index) const {
 }
 
 double MeshSurface::gap_bound(int node_index, const Dofs& /*u*/, double /*time*/) const {
-  if (!is_listed_[static_cast<std::size_t>(node_index)]) return std::numeric_limits<double>::infinity();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (!is_listed_[static_cast<std::size_t>(node_index)]) return std::nextafter(nearby_.horizon, infinity);
   double approach = 0.0;
   const double rim = this->rim(node_index);
   ilaw_facets_pairs_of asked{};
@@ -103,7 +106,7 @@ double MeshSurface::gap_bound(int node_index, const Dofs& /*u*/, double /*time*/
   asked.rim = ilaw::input(&rim, 0, 0);
   asked.approach = ilaw::output(&approach, 0, 0);
   check(ilaw_facets_pairs(search_.get(), &asked));
-  return approach;
+  return approach > 0.0 ? approach : -infinity;  // behind the surface by any distance
 }
 
 ContactPoint MeshSurface::contact_point(int node_index, const Dofs& /*u*/, double /*time*/) const {

@@ -297,7 +297,7 @@ def test_libraries_describe_themselves():
     assert ilaw.search_path()
     law = ilaw.describe("coulomb")
     assert law.id == "coulomb" and law.dimensions == (1, 2, 3)
-    assert str(law.inputs) == "gap, v_previous, area, normal, tangent"
+    assert str(law.inputs) == "gap, v_previous, area, normal, tangent, v_smooth"
     assert law.capabilities == ilaw.Capability.STORE_ENERGY  # with some parameters
     assert not ilaw.Interface("coulomb", velocity_step=1e-3, friction=0.3).capabilities
     assert law.parameters["friction"].default is None
