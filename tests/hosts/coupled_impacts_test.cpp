@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -94,7 +95,9 @@ TEST(CoupledImpacts, NeverMakeEnergy) {
         for (const double gap : beads.scene.gap)
           if (off <= rounding) deepest = std::max(deepest, -gap);
       }
-      EXPECT_LE(deepest, 1e-15) << "e " << restitution << ", pace " << pace;
+      // Places up to 1 are sums of steps up to 0.3: some ulps.
+      EXPECT_LE(deepest, 16.0 * std::numeric_limits<double>::epsilon())
+          << "e " << restitution << ", pace " << pace;
       if (pace < 300.0) {
         EXPECT_LE(off, rounding) << "e " << restitution << ", pace " << pace;
       }
