@@ -33,7 +33,7 @@ std::string normal(const std::string& path) {
 // he may rename the next. The sticky bit forbids that, as in /tmp.
 std::string writable_by_all(const std::string& folder) {
   for (std::size_t end = folder.find('/', 1); end != std::string::npos; end = folder.find('/', end + 1)) {
-    const std::string above = folder.substr(0, end);
+    std::string above = folder.substr(0, end);
     if (const file_status status = status_of(above); status.anyone_writes && !status.sticky) return above;
   }
   return status_of(folder).anyone_writes ? folder : "";
