@@ -90,22 +90,23 @@ bool MeshSurface::find_near(const Dofs& u, const Approach& approach) {
   return true;
 }
 
-double MeshSurface::rim(int node_index) const {
-  return (is_held(node_index) ? leaving_rim : entering_rim) * shortest_edge_;
+// Fills the outputs that are asked for, of this node alone.
+void MeshSurface::find_pair(int node_index, ilaw_facets_pairs_of asked) const {
+  const double rim = (is_held(node_index) ? leaving_rim : entering_rim) * shortest_edge_;
+  asked.struct_size = sizeof asked;
+  asked.count = 1;
+  asked.points = &node_index;
+  asked.rim = ilaw::input(&rim, 0, 0);
+  check(ilaw_facets_pairs(search_.get(), &asked));
 }
 
 double MeshSurface::gap_bound(int node_index, const Dofs& /*u*/, double /*time*/) const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (!is_listed_[static_cast<std::size_t>(node_index)]) return std::nextafter(nearby_.horizon, infinity);
   double approach = 0.0;
-  const double rim = this->rim(node_index);
   ilaw_facets_pairs_of asked{};
-  asked.struct_size = sizeof asked;
-  asked.count = 1;
-  asked.points = &node_index;
-  asked.rim = ilaw::input(&rim, 0, 0);
   asked.approach = ilaw::output(&approach, 0, 0);
-  check(ilaw_facets_pairs(search_.get(), &asked));
+  find_pair(node_index, asked);
   return approach > 0.0 ? approach : -infinity;  // behind the surface by any distance
 }
 
@@ -113,18 +114,13 @@ ContactPoint MeshSurface::contact_point(int node_index, const Dofs& /*u*/, doubl
   std::int32_t facet = 0, place = 0;
   ContactPoint found;
   found.normal.resize(3);
-  const double rim = this->rim(node_index);
   ilaw_facets_pairs_of asked{};
-  asked.struct_size = sizeof asked;
-  asked.count = 1;
-  asked.points = &node_index;
-  asked.rim = ilaw::input(&rim, 0, 0);
   asked.facet = &facet;
   asked.place = &place;
   asked.gap = ilaw::output(&found.gap, 0, 0);
   asked.normal = ilaw::output(found.normal.data(), 0, 1);
   asked.weights = ilaw::output(found.weights.data(), 0, 1);
-  check(ilaw_facets_pairs(search_.get(), &asked));
+  find_pair(node_index, asked);
   found.partner_count = ContactPoint::most_partners;
   found.partners = facets_[static_cast<std::size_t>(std::max(facet, 0))];
   found.is_beyond_border = place == ILAW_PLACE_BEYOND;

@@ -40,7 +40,7 @@ class MeshSurface : public Counterpart {
   struct Destroy {
     void operator()(ilaw_facets* search) const { ilaw_facets_destroy(search); }
   };
-  double rim(int node_index) const;
+  void find_pair(int node_index, ilaw_facets_pairs_of asked) const;
 
   std::vector<Facet> facets_;
   std::unique_ptr<ilaw_facets, Destroy> search_;
