@@ -1,0 +1,103 @@
+// made_problem.hpp - coupled contacts made from their solution, for any law: velocities and impulses are
+// drawn on the law, then walls and free velocities are chosen so that they solve the problem. So a solution
+// exists, and what a solver calls solved is judged by the law alone, in the scale of the velocities given to
+// it.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "stress/draw.hpp"
+
+#include <ilaw/coupled.hpp>
+#include <ilaw/loader.hpp>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace ilaw::host {
+
+struct MadeSetup {
+  enum class Normals { any, wedged, redundant };
+
+  int bodies = 1, contacts = 2;
+  double mass_decades = 0.0;  // masses from 1 to 10^this
+  double no_freedom = 0.0;    // probability that a body cannot move along an axis; with the form FULL
+  bool rotate = false;        // with the form FULL; spheres always do
+  Normals normals = Normals::any;
+  double gap = 0.0;  // largest, over speed times step
+  double open = 1.0 / 3.0;
+  double speed = 1.0, step = 1e-3;
+};
+
+// Largest error of a law, relative to the largest velocity that the problem brings; the same of the
+// velocities of bodies for these impulses; and the reported work less that of these impulses, relative to its
+// parts.
+struct MadeAudit {
+  double residual = 0.0, momentum = 0.0, work = 0.0;
+};
+
+class MadeProblem {
+ public:
+  // The laws take turns. They have the global frame, double numbers, three dimensions and this form of H:
+  // SCALAR, FULL, TRANSVERSE (spheres), or TRANSVERSE_SPIN (spheres, with moments).
+  MadeProblem(const std::vector<const interface*>& laws, ilaw_delassus_form form, const MadeSetup& setup,
+              Draw& draw);
+
+  // Appends another problem with the same laws. No body of one touches one of the other.
+  void add(const MadeProblem& other);
+  // From rest, or from the impulses that the last call left.
+  ilaw_coupled_report solve(coupled& solver, const ilaw_coupled_options& options);
+  void forget_impulses();
+
+  MadeAudit audit(const ilaw_coupled_report& report) const;
+  // The same of the solution that the problem was made from.
+  MadeAudit audit_of_solution() const;
+  // Largest velocity that the problem brings: free, before the step, of walls, gap over step.
+  double scale() const;
+
+  int body_count() const { return static_cast<int>(bodies_.size()); }
+  int contact_count() const { return static_cast<int>(contacts_.size()); }
+  // Impulses of all contacts, three components each, and moments behind them.
+  std::vector<double> impulses() const;
+  std::vector<double> velocities() const;
+
+ private:
+  using Vector = std::array<double, 3>;
+  using Wrench = std::array<double, 6>;  // velocity and spin, or impulse and moment
+  using Matrix = std::array<Wrench, 6>;
+  struct Body {
+    Wrench inverse{};  // masses, then moments of inertia
+    Wrench solution{}, free{}, before{}, velocity{};
+  };
+  struct Contact {
+    std::size_t law = 0;
+    std::int32_t body = 0, counterpart = -1;
+    Vector normal{}, arm{}, other_arm{};
+    double gap = 0.0;
+    Wrench wall{}, wall_before{}, made{}, impulse{};
+    std::vector<double> state;
+  };
+
+  int width() const { return form_ == ILAW_DELASSUS_TRANSVERSE_SPIN ? 6 : 3; }
+  bool rotates() const { return setup_.rotate || form_ >= ILAW_DELASSUS_TRANSVERSE; }
+  void draw_bodies(Draw& draw);
+  void draw_contact(Draw& draw, Contact& contact);
+  void make(Draw& draw);
+  Wrench relative(const Contact& contact, Wrench Body::*motion) const;
+  void add_impulse(const Contact& contact, const Wrench& impulse, std::vector<Wrench>& sums) const;
+  Matrix delassus(const Contact& contact) const;
+  Wrench smooth(const Contact& contact) const;
+  // Impulse of the law alone at this free velocity.
+  Wrench answer(const Contact& contact, const Wrench& v_free) const;
+  bool is_well_posed(const Contact& contact, const Wrench& v) const;
+  MadeAudit audit(Wrench Contact::*impulse, Wrench Body::*velocity) const;
+
+  ilaw_delassus_form form_;
+  MadeSetup setup_;
+  std::vector<const interface*> laws_;
+  std::vector<Body> bodies_;
+  std::vector<Contact> contacts_;
+};
+
+}  // namespace ilaw::host
