@@ -7,6 +7,8 @@
 #include <ilaw/ilaw.h>
 
 #include <cstdint>
+#include <cstdlib>
+#include <numeric>
 
 namespace ilaw::coupled {
 
@@ -33,10 +35,13 @@ inline void store(const ilaw_output& array, std::int64_t i, std::uint32_t dimens
 // Upper bound of counts: sizes of arrays cannot overflow.
 inline constexpr std::int64_t max_entries = std::int64_t{1} << 40;
 
-// Whether two numbers of an output have the same address.
+// Whether two numbers of an output have the same address: i s + c t is that of another i and c.
 inline bool collides(const ilaw_output& a, std::int64_t count, std::int64_t components) {
-  return a.values && components > 0 &&
-         ((count > 1 && a.node_stride == 0) || (count > 0 && components > 1 && a.component_stride == 0));
+  const std::int64_t s = std::abs(a.node_stride), t = std::abs(a.component_stride);
+  if (!a.values || count < 1 || components < 1 || count * components == 1) return false;
+  if (s == 0 && t == 0) return true;
+  const std::int64_t common = std::gcd(s, t);
+  return t / common < count && s / common < components;
 }
 
 }  // namespace ilaw::coupled

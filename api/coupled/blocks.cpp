@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "blocks.hpp"
 
+#include <ilaw/ilaw.h>
+
 #include <algorithm>
 
 namespace ilaw::coupled {
@@ -93,6 +95,7 @@ void Blocks::give_back(Blocks& to) const {
       for (int c = 0; c < layout.state_size; ++c)
         target.column(layout.state_out + c)[at] = block.column(layout.state_out + c)[lane];
       target.status[at] = block.status[lane];
+      if (block.bad_count > 0 && block.status[lane] >= ILAW_BAD_INPUT) target.reason = block.reason;
       target.asleep = target.asleep && block.asleep;
     }
   }

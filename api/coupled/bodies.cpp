@@ -6,6 +6,7 @@
 #include "sizes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace ilaw::coupled {
@@ -18,7 +19,7 @@ const char* Bodies::complaint(const ilaw_bodies* given) {
   if (bodies.count >= INT32_MAX) return "count is above 2^31 - 2";
   if (const char* reason = complaint_of_floats(bodies)) return reason;
   for (const ilaw_output* a : {&bodies.velocity, &bodies.spin, &bodies.impulse, &bodies.angular_impulse})
-    if (collides(*a, bodies.count, bodies.dimension)) return "an output of bodies has a stride of 0";
+    if (collides(*a, bodies.count, bodies.dimension)) return "an output of bodies overlaps itself";
   if (bodies.count == 0) return nullptr;
   if (!bodies.inverse_mass.values || !bodies.v_free.values) return "inverse_mass or v_free is missing";
   if (!bodies.inverse_inertia.values) return nullptr;
@@ -27,7 +28,9 @@ const char* Bodies::complaint(const ilaw_bodies* given) {
   return bodies.v_previous.values && !bodies.spin_previous.values ? "spin_previous is missing" : nullptr;
 }
 
-void Bodies::read(const ilaw_bodies& given) {
+const char* Bodies::read(const ilaw_bodies& given) {
+  const auto is_inverse = [](double x) { return x >= 0.0 && std::isfinite(x); };
+  bool are_masses = true, are_inertias = true;
   given_ = given;
   split_.clear();
   const auto count = static_cast<std::size_t>(given.count);
@@ -48,6 +51,8 @@ void Bodies::read(const ilaw_bodies& given) {
       body.spin = {};
       body.inverse_inertia = 0.0;
     }
+    are_masses = are_masses && is_inverse(body.inverse_mass);
+    are_inertias = are_inertias && is_inverse(body.inverse_inertia);
     previous_[b].velocity = vector(given.v_previous, i, given.dimension);
     previous_[b].spin = rotate() ? vector(given.spin_previous, i, 3) : Vector{};
     movable_[b] = moves(body);
@@ -58,6 +63,11 @@ void Bodies::read(const ilaw_bodies& given) {
     const std::int64_t stride = given.inverse_inertia.component_stride;
     for (std::size_t c = 0; rotate() && c < (stride == 0 ? 3 : 6); ++c)
       inertia.inverse_inertia[c] = value(given.inverse_inertia, i, static_cast<std::int64_t>(c));
+    for (std::size_t c = 0; c < 3; ++c) {
+      are_masses = are_masses && is_inverse(inertia.inverse_mass[c]);
+      are_inertias = are_inertias && is_inverse(inertia.inverse_inertia[c]) &&
+                     std::isfinite(inertia.inverse_inertia[c + 3]);
+    }
     const auto is_nonzero = [](double x) { return x != 0.0; };
     movable_[b] = std::any_of(inertia.inverse_mass.begin(), inertia.inverse_mass.end(), is_nonzero) ||
                   std::any_of(inertia.inverse_inertia.begin(), inertia.inverse_inertia.end(), is_nonzero);
@@ -67,6 +77,8 @@ void Bodies::read(const ilaw_bodies& given) {
   movable_[count] = 0;
   now_ = free_;
   rank_by_id();
+  if (!are_masses) return "an inverse_mass of bodies is below 0 or not finite";
+  return are_inertias ? nullptr : "an inverse_inertia of bodies is below 0 or not finite";
 }
 
 void Bodies::rank_by_id() {
@@ -105,6 +117,15 @@ Inertia Bodies::inertia_of(std::int32_t body) const {
   return {{m, m, m}, {j, j, j, 0.0, 0.0, 0.0}};
 }
 
+double Bodies::free_speed() const {
+  double most = 0.0;
+  for (const Body& body : free_) {
+    const double speed = largest(body.velocity);
+    most = speed > most && std::isfinite(speed) ? speed : most;
+  }
+  return most;
+}
+
 Motion Bodies::change(std::size_t body, const Motion& impulse) const {
   const double whole = split_.empty() ? 1.0 : 1.0 / split_[body];
   if (inertia_.empty()) {
@@ -120,10 +141,16 @@ double Bodies::set(const std::vector<Motion>& impulses) {
   for (std::size_t b = 0; b < impulses.size(); ++b) {
     const Motion by = change(b, impulses[b]);
     const Vector velocity = free_[b].velocity + by.velocity;
-    const double moved = largest(velocity - now_[b].velocity);
+    const Vector spin = free_[b].spin + by.spin;
+    const double moved = largest(velocity - now_[b].velocity), turned = largest(spin - now_[b].spin);
     most = moved > most ? moved : most;
+    if (turned > 0.0) {  // as a velocity of the same energy
+      const double mass = free_[b].inverse_mass, inertia = free_[b].inverse_inertia;
+      const double length = inertia > 0.0 ? std::sqrt(mass / inertia) : 1.0;
+      most = length * turned > most ? length * turned : most;
+    }
     now_[b].velocity = velocity;
-    now_[b].spin = free_[b].spin + by.spin;
+    now_[b].spin = spin;
   }
   return most;
 }

@@ -37,7 +37,8 @@ class Bodies {
  public:
   // Why the host's struct is refused, or null.
   static const char* complaint(const ilaw_bodies* given);
-  void read(const ilaw_bodies& given);
+  // Why their masses are refused, or null.
+  const char* read(const ilaw_bodies& given);
 
   std::int64_t count() const { return given_.count; }
   std::uint32_t dimension() const { return given_.dimension; }
@@ -66,9 +67,11 @@ class Bodies {
   // Velocities before the step, without masses.
   const Body* previous() const { return previous_.data(); }
   Inertia inertia_of(std::int32_t body) const;
+  // Largest component of the velocities without contacts.
+  double free_speed() const;
 
   // Velocities without contacts plus the changes by impulses and their moments, one Motion per body. Returns
-  // the largest change of a velocity.
+  // the largest change of a velocity, or of a spin as a velocity.
   double set(const std::vector<Motion>& impulses);
   // Replaces the changes since `start` by those that the impulses of all ranks make.
   void exchange(const std::vector<Motion>& start, Ranks& ranks);

@@ -15,8 +15,9 @@ namespace {
 
 // Largest part of an arm across the normal of a transverse H: arms that went through single precision pass.
 constexpr double along_tolerance = 1e-6;
-// H of an axis along which nothing gives way, relative to the largest: laws resolve 2^-42 of it.
-constexpr double driven_delassus = 0x1p-40;
+// H of an axis along which nothing moves, relative to the largest: laws resolve 2^-42 of it. An impulse r
+// that a law bounds there moves what it should not by this part of H r.
+constexpr double held_delassus = 0x1p-40;
 constexpr std::uint32_t max_ends = 1U << 16;
 
 // Arms that are not numbers are left to the law to refuse, at their contact.
@@ -79,13 +80,13 @@ const char* Contacts::complaint() const {
       (counterpart_count_ > 1 && !given_.counterpart_weight.values))
     return "several bodies on a side, and their weights are missing";
   if (!theirs_.impulse.values) return "impulse is missing";
-  if (collides(theirs_.impulse, theirs_.node_count, dimension_)) return "impulse has a stride of 0";
+  if (collides(theirs_.impulse, theirs_.node_count, dimension_)) return "impulse overlaps itself";
   if (has_spins()) {
     if (!theirs_.moment.values) return "delassus_form has spins, and moment is missing";
-    if (collides(theirs_.moment, theirs_.node_count, 3)) return "moment has a stride of 0";
+    if (collides(theirs_.moment, theirs_.node_count, 3)) return "moment overlaps itself";
     if (is_weighted()) return "delassus_form has spins; expected one body on either side, without weights";
   }
-  if (collides(theirs_.energy, theirs_.node_count, ILAW_ENERGY_COUNT)) return "energy has a stride of 0";
+  if (collides(theirs_.energy, theirs_.node_count, ILAW_ENERGY_COUNT)) return "energy overlaps itself";
   return theirs_.status && theirs_.node_count > 1 && theirs_.status_stride == 0 ? "status_stride is 0"
                                                                                 : nullptr;
 }
@@ -112,9 +113,9 @@ const char* Contacts::complaint_of_law(const Bodies& bodies) {
       (!theirs_.state_in.values || !theirs_.state_out.values))
     return "state_in or state_out is missing";
   if (collides(theirs_.state_out, theirs_.node_count, static_cast<std::int64_t>(info_.state_size)))
-    return "state_out has a stride of 0";
+    return "state_out overlaps itself";
   for (std::uint32_t a = 0; theirs_.amounts && a < info_.amount_count; ++a)
-    if (collides(theirs_.amounts[a], theirs_.node_count, 1)) return "an array of amounts has a stride of 0";
+    if (collides(theirs_.amounts[a], theirs_.node_count, 1)) return "an array of amounts overlaps itself";
   return nullptr;
 }
 
@@ -143,6 +144,13 @@ const char* Contacts::complaint_of_contact(std::int64_t k, const Bodies& bodies)
     for (std::uint32_t j = body_count_; j < ends(); ++j)
       if (const std::int32_t body = end(k, i); body != bodies.wall() && body == end(k, j))
         return "a contact of a body with itself";
+  const std::int64_t size = std::max(1U, given_.weight_size);
+  for (std::int64_t c = 0; is_weighted() && c < size * ends(); ++c) {
+    const bool first_side = c < size * body_count_;
+    const double w = first_side ? value(given_.body_weight, k, c)
+                                : value(given_.counterpart_weight, k, c - size * body_count_);
+    if (!std::isfinite(w)) return "a weight is not finite";
+  }
   return nullptr;
 }
 
@@ -217,6 +225,22 @@ void Contacts::lay_out(const Bodies& bodies) {
 Vector Contacts::start(const ilaw_output& a, std::int64_t k) const {
   const Vector start = vector(ilaw::input(a.values, a.node_stride, a.component_stride), k, dimension_);
   return std::isfinite(dot(start, start)) ? start : Vector{};
+}
+
+bool Contacts::is_held(const Block& block, std::size_t lane, std::size_t axis) const {
+  if (!may_be_held() || given_.delassus_form != ILAW_DELASSUS_FULL || dimension_ == 1) return false;
+  double most = 0.0;
+  for (std::uint32_t c = 0; c < dimension_; ++c)
+    most = std::max(most, block.column(layout_.delassus + static_cast<int>(c))[lane]);
+  return axis < dimension_ &&
+         block.column(layout_.delassus + static_cast<int>(axis))[lane] <= held_delassus * most;
+}
+
+void Contacts::add_outputs(std::vector<const double*>& outputs) const {
+  if (count() == 0) return;
+  for (const ilaw_output* a : {&theirs_.impulse, &theirs_.moment, &theirs_.energy})
+    if (a->values) outputs.push_back(a->values);
+  if (layout_.state_size > 0) outputs.push_back(theirs_.state_out.values);
 }
 
 Vector Contacts::relative(std::int64_t k, const Bodies& bodies) const {
@@ -344,7 +368,7 @@ void Contacts::fill_delassus(Block& block, std::size_t lane, const Bodies& bodie
   Symmetric h = bodies.rotate() || layout_.weight_size > 1 ? coupled_delassus(block, lane, bodies)
                                                            : diagonal_delassus(block, lane, bodies);
   const double most = std::max({h[0], h[1], h[2]});
-  for (std::uint32_t c = 0; c < dimension_; ++c) h[c] = std::max(h[c], driven_delassus * most);
+  for (std::uint32_t c = 0; c < dimension_; ++c) h[c] = std::max(h[c], held_delassus * most);
   write_form(block, lane, layout_, h, given_.delassus_form, dimension_, block.at(layout_.normal, lane));
 }
 

@@ -39,6 +39,11 @@ class Contacts {
 
   // Writes all columns of contact k into a lane; false where an arm is not along the normal.
   bool fill(Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const;
+  // Whether nothing moves along this axis of the host, so that H has a small number for it.
+  bool may_be_held() const { return (kind_ == Kind::rigid || kind_ == Kind::weighted) && !is_transverse(); }
+  bool is_held(const Block& block, std::size_t lane, std::size_t axis) const;
+  // The first number of each output.
+  void add_outputs(std::vector<const double*>& outputs) const;
   bool is_in_reach(const Block& block, std::size_t lane, const Vector& velocity) const;
 
   // With moments v_free is followed by spins and impulse by moments.

@@ -3,11 +3,13 @@
 #include "sizes.hpp"
 #include "solver.hpp"
 
+#include <atomic>
 #include <new>
 #include <stdexcept>
 
 struct ilaw_coupled {
   ilaw::coupled::Solver solver;
+  std::atomic_flag is_in_use;
 };
 
 ilaw_coupled* ILAW_CALL ilaw_coupled_create(void) { return new (std::nothrow) ilaw_coupled; }
@@ -29,6 +31,12 @@ ilaw_result ILAW_CALL ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies
     if (report) sized::write(report, said);
     return ILAW_INVALID_ARGUMENT;
   }
+  if (solver->is_in_use.test_and_set(std::memory_order_acquire)) {
+    said.bad_group = said.bad_contact = -1;
+    said.reason = "another thread's call uses the solver; give each thread its own";
+    if (report) sized::write(report, said);
+    return ILAW_INVALID_ARGUMENT;
+  }
   int32_t code = ILAW_OUT_OF_MEMORY;
   try {
     code = solver->solver.solve(bodies, groups, group_count, asked, said);
@@ -37,6 +45,7 @@ ilaw_result ILAW_CALL ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies
   } catch (const std::length_error&) {
     said.reason = "out of memory";
   }
+  solver->is_in_use.clear(std::memory_order_release);
   if (report) sized::write(report, said);
   return code;
 }

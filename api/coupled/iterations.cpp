@@ -4,71 +4,38 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace ilaw::coupled {
-namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
-
-void Iterations::begin(std::uint32_t most, double tolerance, double speed, double rounding) {
-  most_ = most;
-  speed_ = speed;
-  rounding_ = rounding;
-  tolerance_ = tolerance;
-  count_ = most_counted_ = 0;
-  failed_ = ILAW_OK;
-  residual_ = least_ = least_in_first_half_ = lowered_ = infinity;
-  size_ = first_size_ = 0.0;
-  method_ = ILAW_METHOD_GAUSS_SEIDEL;
-}
-
-std::int32_t Iterations::run(Blocks& blocks) {
-  bool done = false;
-  while (!done && !is_over()) {
-    done = conjugate(blocks, most_ <= few ? most_ : first_conjugate);
-    if (done || is_over()) break;
-    solve_islands(blocks);
+Progress Iterations::run(Blocks& blocks, Progress progress, bool& stalled) {
+  const double scale = progress.scale;
+  for (;;) {
+    progress.scale = std::max(scale, progress.limits.speed);
+    const std::uint32_t most = progress.limits.most;
+    const Outcome outcome = conjugate(blocks, progress, most <= few ? most : first_conjugate);
+    if (outcome != Outcome::stalled) break;
     // A contact that came within reach meanwhile: all of it again, from here.
-    done = is_over() || !ranks_.any_rank(sweep_.wake(blocks));
+    if (solve_islands(blocks, progress, stalled) != Outcome::solved) return progress;
+    if (!ranks_.any_rank(sweep_.wake(blocks))) return progress;
   }
-  most_counted_ = std::max(most_counted_, count_);
-  stalled_ = !is_solved() && !(least_ < 0.9 * least_in_first_half_);
-  return failed_;
+  stalled = stalled || progress.has_stalled();
+  return progress;
 }
 
-bool Iterations::iterate(Blocks& blocks, const Sweep::Conjugate& conjugate) {
-  Change change = count_ == 0 ? sweep_.run_all(blocks) : sweep_.run(blocks, conjugate);
+void Iterations::iterate(Blocks& blocks, Progress& progress, const Sweep::Conjugate& conjugate) {
+  Change change = progress.count == 0 ? sweep_.run_all(blocks) : sweep_.run(blocks, conjugate);
   exchange_velocities();
-  return accept(change);
-}
-
-bool Iterations::accept(Change change) {
+  // Maxima take no NaN from a host's function: a code and a sum that is no number go as flags.
   std::array<double, 4> most{change.largest, change.size, change.code < 0 ? 1.0 : 0.0,
                              std::isfinite(change.square) ? 0.0 : 1.0};
   ranks_.largest(most.data(), most.size());
   ranks_.sum(&change.square, 1);
-  ++count_;
-  if (most[2] > 0.0) failed_ = change.code < 0 ? change.code : std::int32_t{ILAW_INVALID_ARGUMENT};
-  change_ = most[0];
-  if (most[3] > 0.0) change_ = infinity;
-  square_ = change.square;
-  size_ = std::max(most[1], speed_);
-  if (count_ == 1 && !(first_size_ > 0.0)) first_size_ = size_;
-  residual_ = change_ > 0.0 ? change_ / size_ : 0.0;
-  least_ = std::min(least_, residual_);
-  if (count_ <= most_ / 2) least_in_first_half_ = least_;
-  return failed_ >= 0 && (residual_ <= tolerance_ || stays_at_rounding());
-}
-
-bool Iterations::stays_at_rounding() {
-  if (change_ < 0.9 * lowered_) {
-    lowered_ = change_;
-    since_lowered_ = 0;
+  if (std::any_of(most.begin(), most.end(), [](double x) { return std::isnan(x); })) {
+    progress.code = ILAW_INVALID_ARGUMENT;
+    progress.reason = "a function of the exchange returned a value that is not a number";
   }
-  return ++since_lowered_ > plateau && change_ <= rounding_;
+  if (most[2] > 0.0) progress.code = change.code < 0 ? change.code : std::int32_t{ILAW_INVALID_ARGUMENT};
+  progress.note(most[3] > 0.0 ? Progress::infinity : most[0], change.square, most[1]);
 }
 
 void Iterations::keep_start() {
@@ -85,27 +52,28 @@ void Iterations::exchange_velocities() {
   problem_.bodies.exchange(start_, ranks_);
 }
 
-bool Iterations::conjugate(Blocks& blocks, std::uint32_t most) {
+Outcome Iterations::conjugate(Blocks& blocks, Progress& progress, std::uint32_t most) {
   constexpr double fast = 0.1;
   Sweep::Conjugate step;
   double square_before = -1.0;
-  method_ = most > 1 ? ILAW_METHOD_CONJUGATE : ILAW_METHOD_GAUSS_SEIDEL;
-  for (std::uint32_t k = 0; k < most && !is_over(); ++k) {
+  progress.method = most > 1 ? ILAW_METHOD_CONJUGATE : ILAW_METHOD_GAUSS_SEIDEL;
+  for (std::uint32_t k = 0; k < most && !progress.is_over(); ++k) {
     if (k > 0) {
       // Fletcher-Reeves in the norm of H; restart where it grows. Fast iterations need no direction.
-      const double beta = square_before > 0.0 ? square_ / square_before : 2.0;
+      const double beta = square_before > 0.0 ? progress.square / square_before : 2.0;
       step = {true, beta > fast && beta <= 1.0 ? beta : 0.0};
-      square_before = square_;
+      square_before = progress.square;
       extrapolate_bodies(step.beta);
       if (k % wake_interval == 0) sweep_.wake(blocks);
     } else {
       direction_.assign(static_cast<std::size_t>(problem_.bodies.count()), {});
       keep_start();
     }
-    const bool done = iterate(blocks, step);
-    if (done && !ranks_.any_rank(sweep_.wake(blocks))) return true;
+    iterate(blocks, progress, step);
+    if (progress.is_done() && !ranks_.any_rank(sweep_.wake(blocks))) return Outcome::solved;
   }
-  return false;
+  if (progress.code < 0) return Outcome::refused;
+  return progress.is_over() ? Outcome::spent : Outcome::stalled;
 }
 
 void Iterations::extrapolate_bodies(double beta) {
@@ -165,106 +133,195 @@ void Iterations::read_scaled(const Blocks& blocks) {
   }
 }
 
-bool Iterations::anderson(Blocks& blocks, std::uint32_t most) {
-  method_ = ILAW_METHOD_ANDERSON;
-  lowered_ = infinity;
+// An accelerated iterate with a larger squared change than the plain one before it is given up: the plain one
+// goes on, and the next correction makes a smaller velocity. Contacts that press against each other change by
+// the same in each iteration until one of them slips or opens, which corrections overshoot by far.
+Outcome Iterations::anderson(Blocks& blocks, Progress& progress, std::uint32_t most, Best& best) {
+  constexpr double shorter = 0.25, longer = 2.0, as_large = 1.0 + 1e-3;
+  progress.method = ILAW_METHOD_ANDERSON;
   const std::size_t size = 3 * scales_of(blocks);
   for (auto* vector : {&image_, &step_, &correction_}) vector->resize(size);
   anderson_.reset(size, Anderson::max_depth, 1.0);
   const auto sum = [this](double* values, std::size_t count) { ranks_.sum(values, count); };
-  for (std::uint32_t k = 0; k < most && !is_over(); ++k) {
+  double accepted = Progress::infinity, radius = 0.0, made = 0.0;
+  for (std::uint32_t k = 0; k < most && !progress.is_over(); ++k) {
     if (ranks_.any()) keep_start();
-    if (iterate(blocks, {})) return true;
-    if (square_ < much_less * best_square_) note_best(blocks);
-    if (k + 1 == most || is_over()) break;
+    iterate(blocks, progress);
+    if (progress.is_done()) return Outcome::solved;
+    if (progress.error() < much_less * best.error) {
+      best.error = progress.error();
+      read_impulses(blocks, best.impulses);
+    }
+    if (k + 1 == most || progress.is_over()) break;
+    if (made > 0.0 && !(progress.square <= as_large * accepted)) {
+      radius = shorter * std::min(made, progress.size);
+      made = 0.0;
+      return_to_image(blocks);
+      continue;
+    }
+    if (made > 0.0) radius *= longer;
+    accepted = progress.square;
     read_scaled(blocks);
+    made = 0.0;
     if (!anderson_.correct(image_, step_, sum, correction_)) continue;
+    for (std::size_t i = 0; i < size; ++i) made = std::max(made, scales_[i / 3] * std::fabs(correction_[i]));
+    ranks_.largest(&made, 1);
+    if (!(radius > 0.0)) radius = progress.size;
+    const double part = made > radius ? radius / made : 1.0;
+    made *= part;
     for (std::size_t i = 0; i < size; ++i)
-      correction_[i] = scales_[i / 3] > 0.0 ? correction_[i] / scales_[i / 3] : 0.0;
-    if (ranks_.any()) keep_start();
-    sweep_.add_changes(blocks, correction_.data());
-    exchange_velocities();
+      correction_[i] = scales_[i / 3] > 0.0 ? part * correction_[i] / scales_[i / 3] : 0.0;
+    add_changes(blocks, correction_);
   }
-  return false;
+  if (progress.code < 0) return Outcome::refused;
+  return progress.is_over() ? Outcome::spent : Outcome::stalled;
+}
+
+void Iterations::return_to_image(Blocks& blocks) {
+  read_impulses(blocks, correction_);
+  for (std::size_t i = 0; i < correction_.size(); ++i)
+    correction_[i] = scales_[i / 3] > 0.0 ? image_[i] / scales_[i / 3] - correction_[i] : 0.0;
+  add_changes(blocks, correction_);
 }
 
 // Anderson's acceleration goes on as long as each part of it lowers the residual to a tenth; then other
 // methods get a part, which grows from turn to turn. The best impulses of all are kept.
-bool Iterations::alternate(Blocks& blocks) {
-  best_square_ = infinity;
-  --most_;  // one iteration is left to return to the best impulses
+Outcome Iterations::solve_island(Blocks& blocks, Progress& progress) {
+  Best best;
+  --progress.limits.most;  // one iteration is left to return to the best impulses
   // With ranks none of them has the whole system.
-  const bool done = ranks_.any() ? anderson(blocks, most_) : take_turns(blocks);
-  ++most_;
-  return done || (best_square_ < square_ && !is_over() && return_to_best(blocks));
+  const Outcome outcome = ranks_.any() ? anderson(blocks, progress, progress.limits.most, best)
+                                       : take_turns(blocks, progress, best);
+  ++progress.limits.most;
+  if (outcome == Outcome::solved || progress.code < 0) return outcome;
+  if (best.error < progress.error()) return_to(blocks, progress, best.impulses);
+  return progress.is_done() ? Outcome::solved : Outcome::spent;
 }
 
-bool Iterations::take_turns(Blocks& blocks) {
+Outcome Iterations::take_turns(Blocks& blocks, Progress& progress, Best& best) {
+  constexpr std::uint32_t most_futile = 2;  // turns in a row that do not lower the error by a tenth
   std::uint32_t gauss_seidel_part = first_part, splitting_part = first_part;
   splitting_.reset();
-  for (std::uint32_t turn = 0; !is_over(); ++turn) {
-    for (double before = infinity; !is_over();) {
-      if (anderson(blocks, gauss_seidel_part)) return true;
-      if (!(square_ < 0.01 * before)) break;
-      before = square_;
+  for (std::uint32_t turn = 0, futile = 0; !progress.is_over() && futile < most_futile; ++turn) {
+    const double error_before = best.error;
+    for (double before = Progress::infinity; !progress.is_over();) {
+      if (anderson(blocks, progress, gauss_seidel_part, best) == Outcome::solved) return Outcome::solved;
+      if (!(progress.square < 0.01 * before)) break;
+      before = progress.square;
     }
-    if (is_over()) break;
-    keep_best(blocks);
-    if (newton(blocks)) return true;
-    if (is_over()) break;
-    keep_best(blocks);
+    keep_best(blocks, progress, best);
+    if (turn == 0 && are_incompatible(blocks, progress)) return Outcome::stalled;
+    if (newton(blocks, progress) == Outcome::solved) return Outcome::solved;
+    keep_best(blocks, progress, best);
     // With acceleration, then without: both happen to run in circles.
-    if (splitting(blocks, splitting_part, turn % 2 == 0 ? Anderson::max_depth : 0)) return true;
-    keep_best(blocks);
+    const std::size_t depth = turn % 2 == 0 ? Anderson::max_depth : 0;
+    if (splitting(blocks, progress, splitting_part, depth) == Outcome::solved) return Outcome::solved;
+    keep_best(blocks, progress, best);
     gauss_seidel_part *= 2;
     if (turn % 2 == 1) splitting_part *= 2;
+    futile = best.error < 0.9 * error_before ? 0 : futile + 1;
+  }
+  if (progress.code < 0) return Outcome::refused;
+  return progress.is_over() ? Outcome::spent : Outcome::stalled;
+}
+
+// Whether each plain iteration adds the same impulses again, which move no body: laws that push each other
+// up. Where r = f(v) never rises with v, no velocity suits them all: for the growth d, sum d.v has one value
+// for all velocities of the bodies, and the one that laws ask for is larger. That holds along normals and for
+// bonds, not along a slip, whose limit rises with the normal impulse.
+bool Iterations::are_incompatible(Blocks& blocks, Progress& progress) {
+  constexpr std::uint32_t most = 50;
+  constexpr double steady = 1e-22, still = 1e-11, large = 1e-3;
+  scales_of(blocks);
+  for (auto* vector : {&image_, &step_}) vector->resize(3 * scales_.size());
+  std::vector<double> before;
+  for (std::uint32_t k = 0; k < most && !progress.is_over(); ++k) {
+    keep_start();
+    iterate(blocks, progress);
+    if (progress.is_done() || !(progress.change > large * progress.scale)) return false;
+    read_scaled(blocks);
+    double off = 0.0, moved = 0.0;
+    for (std::size_t i = 0; i < before.size(); ++i) off += (step_[i] - before[i]) * (step_[i] - before[i]);
+    for (std::size_t b = 0; b < start_.size(); ++b)
+      moved = std::max(moved, largest(problem_.bodies.now()[b].velocity - start_[b].velocity));
+    if (!before.empty() && off <= steady * progress.square && moved <= still * progress.change)
+      return progress.is_incompatible = grows_along_normals(blocks);
+    before = step_;
   }
   return false;
 }
 
-// Moves to these impulses, by contact, and iterates once from there.
-bool Iterations::move(Blocks& blocks, const std::vector<double>& changes) {
+bool Iterations::grows_along_normals(const Blocks& blocks) const {
+  constexpr double part = 1e-6;
+  for (const Block& block : blocks.list())
+    for (std::size_t q = 0; q < block.count && !block.asleep; ++q) {
+      const Vector by = block.at(block.layout->change, q), n = block.at(block.layout->normal, q);
+      const Vector across = by - dot(n, by) * n;
+      const double size = largest(by);
+      if (block.status[q] != ILAW_BONDED && largest(across) > part * size) return false;
+      if (dot(by, block.at(block.layout->impulse, q)) < 0.0) return false;
+    }
+  return true;
+}
+
+void Iterations::add_changes(Blocks& blocks, const std::vector<double>& changes) {
   if (ranks_.any()) keep_start();
   sweep_.add_changes(blocks, changes.data());
   exchange_velocities();
+}
+
+void Iterations::move(Blocks& blocks, Progress& progress, const std::vector<double>& changes) {
+  add_changes(blocks, changes);
   if (ranks_.any()) keep_start();
-  return iterate(blocks, {});
+  iterate(blocks, progress);
 }
 
 // The derivatives of laws hold until a contact opens: steps end there. Redundant contacts whose conditions
-// contradict each other by rounding open one by one. Velocities known to their rounding end it.
-bool Iterations::newton(Blocks& blocks) {
-  constexpr std::uint32_t most_steps = 60, most_failures = 5;
-  double least = square_;
-  for (std::uint32_t k = 0, failures = 0; k < most_steps && failures < most_failures && !is_over(); ++k) {
-    const double delta = std::clamp(residual_, 1e-12, 1e-10);
-    if (!newton_.step(blocks, problem_, sweep_, delta, correction_)) return false;
-    method_ = ILAW_METHOD_NEWTON;
-    if (shorten(blocks, part_to_first_opening(blocks)) > max_newton_growth * first_size_) return false;
-    if (move(blocks, correction_)) return true;
-    if (change_ <= rounding_ && square_ > much_less * least) return true;
-    failures = square_ < least ? 0 : failures + 1;
-    least = std::min(least, square_);
+// contradict each other by rounding open one by one. Velocities known to their rounding end it. A few steps
+// that do not lower the change may come before one that does; the best impulses are returned to by keep_best.
+Outcome Iterations::newton(Blocks& blocks, Progress& progress) {
+  constexpr std::uint32_t most_steps = 60, most_failures = 5, most_off = 10;
+  const double start = progress.square;
+  constexpr double much = 0.25;
+  double least = Progress::infinity;  // the first step may be far off
+  for (std::uint32_t k = 0, failures = 0; k < most_steps && failures < most_failures && !progress.is_over();
+       ++k) {
+    const double delta = std::clamp(progress.residual(), 1e-12, 1e-10);
+    if (!newton_.step(blocks, problem_, sweep_, delta, correction_)) return Outcome::refused;
+    progress.method = ILAW_METHOD_NEWTON;
+    if (shorten(blocks, part_to_first_opening(blocks)) > max_newton_growth * progress.scale)
+      return Outcome::refused;
+    move(blocks, progress, correction_);
+    if (progress.is_done()) return Outcome::solved;
+    if (progress.change <= progress.limits.rounding && progress.square > much * least) return Outcome::solved;
+    failures = progress.square < least ? 0 : failures + 1;
+    least = std::min(least, progress.square);
+    if (k >= most_off && !(least < start)) break;
   }
-  return false;
+  return progress.is_over() ? Outcome::spent : Outcome::stalled;
 }
 
-bool Iterations::splitting(Blocks& blocks, std::uint32_t most, std::size_t depth) {
-  if (!splitting_.open(blocks, problem_, sweep_, depth)) return false;
-  method_ = ILAW_METHOD_DOUGLAS_RACHFORD;
-  double close = tolerance_ * size_;
-  for (std::uint32_t k = 0; k + 1 < most && count_ + 1 < most_; ++k) {
-    if (!splitting_.iterate(blocks, problem_)) return false;
-    ++count_;
+Outcome Iterations::splitting(Blocks& blocks, Progress& progress, std::uint32_t most, std::size_t depth) {
+  if (progress.is_over()) return Outcome::spent;
+  if (!splitting_.open(blocks, problem_, sweep_, depth)) return Outcome::refused;
+  progress.method = ILAW_METHOD_DOUGLAS_RACHFORD;
+  double close = progress.limits.tolerance * progress.scale;
+  for (std::uint32_t k = 0; k + 1 < most && progress.count + 1 < progress.limits.most; ++k) {
+    if (!splitting_.iterate(blocks, problem_)) return Outcome::refused;
+    ++progress.count;
     // Both parts agree: an iteration of Gauss-Seidel measures the residual that is asked for.
     if (splitting_.difference() > close) continue;
     splitting_.changes(blocks, correction_);
-    if (move(blocks, correction_)) return true;
-    if (is_over() || !splitting_.open(blocks, problem_, sweep_, depth)) return false;
+    move(blocks, progress, correction_);
+    if (progress.is_done()) return Outcome::solved;
+    if (progress.is_over()) return Outcome::spent;
+    if (!splitting_.open(blocks, problem_, sweep_, depth)) return Outcome::refused;
     close *= 0.1;
   }
   splitting_.changes(blocks, correction_);
-  return !is_over() && move(blocks, correction_);
+  if (progress.is_over()) return Outcome::spent;
+  move(blocks, progress, correction_);
+  return progress.is_done() ? Outcome::solved : progress.is_over() ? Outcome::spent : Outcome::stalled;
 }
 
 std::size_t Iterations::scales_of(const Blocks& blocks) {
@@ -274,24 +331,20 @@ std::size_t Iterations::scales_of(const Blocks& blocks) {
   return scales_.size();
 }
 
-// Impulses with the least residual so far; others go back to them.
-void Iterations::keep_best(Blocks& blocks) {
-  if (!(square_ <= best_square_)) {
-    if (!is_over()) return_to_best(blocks);
-    return;
+// Keeps the present impulses, or returns to the best ones.
+void Iterations::keep_best(Blocks& blocks, Progress& progress, Best& best) {
+  if (progress.error() <= best.error) {
+    best.error = progress.error();
+    read_impulses(blocks, best.impulses);
+  } else if (!progress.is_over()) {
+    return_to(blocks, progress, best.impulses);
   }
-  note_best(blocks);
 }
 
-void Iterations::note_best(const Blocks& blocks) {
-  best_square_ = square_;
-  read_impulses(blocks, best_);
-}
-
-bool Iterations::return_to_best(Blocks& blocks) {
+void Iterations::return_to(Blocks& blocks, Progress& progress, const std::vector<double>& impulses) {
   read_impulses(blocks, correction_);
-  for (std::size_t i = 0; i < best_.size(); ++i) correction_[i] = best_[i] - correction_[i];
-  return move(blocks, correction_);
+  for (std::size_t i = 0; i < impulses.size(); ++i) correction_[i] = impulses[i] - correction_[i];
+  move(blocks, progress, correction_);
 }
 
 void Iterations::read_impulses(const Blocks& blocks, std::vector<double>& impulses) const {
@@ -304,41 +357,45 @@ void Iterations::read_impulses(const Blocks& blocks, std::vector<double>& impuls
   }
 }
 
-void Iterations::solve_islands(Blocks& blocks) {
+// An island that is solved in its own scale is left alone.
+Outcome Iterations::solve_islands(Blocks& blocks, Progress& progress, bool& stalled) {
   if (!ranks_.any()) islands_.find(blocks, problem_);
   if (ranks_.any() || islands_.count() <= 1) {
-    alternate(blocks);
-    return;
+    const Outcome outcome = solve_island(blocks, progress);
+    stalled = stalled || progress.has_stalled();
+    return outcome;
   }
-  std::vector<double> residuals(static_cast<std::size_t>(islands_.count()), 0.0);
-  find_island_residuals(blocks, residuals);
-  const std::uint32_t first = count_;
-  std::uint32_t method = method_;
-  const double first_size = size_;
-  double largest = 0.0, size = size_;
-  for (std::int32_t island = 0; island < islands_.count() && failed_ >= 0; ++island) {
-    const double residual = residuals[static_cast<std::size_t>(island)] / first_size;
-    if (!(residual > tolerance_)) {
-      largest = std::max(largest, residual);
-      continue;
+  std::vector<Progress> islands = progress_of_islands(blocks, progress);
+  Progress all = islands.front();
+  bool is_solved = true;
+  for (std::int32_t island = 0; island < islands_.count(); ++island) {
+    Progress& own = islands[static_cast<std::size_t>(island)];
+    if (own.residual() > own.limits.tolerance) {
+      island_.select(blocks, islands_.lanes(island));
+      is_solved = solve_island(island_, own) == Outcome::solved && is_solved;
+      island_.give_back(blocks);
+      stalled = stalled || own.has_stalled();
     }
-    count_ = first;
-    size_ = first_size;
-    island_.select(blocks, islands_.lanes(island));
-    alternate(island_);
-    island_.give_back(blocks);
-    largest = std::max(largest, residual_);
-    size = std::max(size, size_);
-    if (count_ > most_counted_) method = method_;
-    most_counted_ = std::max(most_counted_, count_);
+    if (island == 0)
+      all = own;
+    else
+      all.merge(own);
+    if (own.code < 0) break;
   }
-  count_ = std::max(first, most_counted_);
-  residual_ = largest;
-  size_ = size;
-  method_ = method;
+  progress = all;
+  return is_solved ? Outcome::solved : Outcome::spent;
 }
 
-void Iterations::find_island_residuals(const Blocks& blocks, std::vector<double>& residuals) {
+// From the changes of the last iteration over all contacts.
+std::vector<Progress> Iterations::progress_of_islands(const Blocks& blocks, const Progress& progress) const {
+  std::vector<Progress> islands(static_cast<std::size_t>(islands_.count()));
+  for (Progress& own : islands) {
+    own.limits = progress.limits;
+    own.scale = progress.limits.speed;
+    own.count = progress.count;
+    own.method = progress.method;
+    own.change = 0.0;
+  }
   Columns response{};
   std::size_t k = 0;
   for (const Block& block : blocks.list()) {
@@ -348,15 +405,18 @@ void Iterations::find_island_residuals(const Blocks& blocks, std::vector<double>
     }
     const Layout& layout = *block.layout;
     sweep_.respond(block, block.column(layout.change), block.stride, response.data());
-    for (std::size_t q = 0; q < block.count; ++q, ++k)
+    for (std::size_t q = 0; q < block.count; ++q, ++k) {
+      Progress& own = islands[static_cast<std::size_t>(islands_.labels()[k])];
+      own.scale = std::max(own.scale, problem_.speeds[block.order + q]);
       for (std::size_t c = 0; c < static_cast<std::size_t>(layout.width); ++c) {
-        double& most = residuals[static_cast<std::size_t>(islands_.labels()[k])];
         const double length = c < 3 ? 1.0 : block.column(layout.length)[q];
         const double change = std::fabs(length * response[c * max_stride + q]);
-        most = std::max(most, change);
-        if (!std::isfinite(change)) most = infinity;
+        own.change = std::isfinite(change) ? std::max(own.change, change) : Progress::infinity;
       }
+    }
   }
+  for (Progress& own : islands) own.least = own.least_in_first_half = own.lowered = own.size = own.change;
+  return islands;
 }
 
 }  // namespace ilaw::coupled

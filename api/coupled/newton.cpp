@@ -206,7 +206,10 @@ void Newton::assemble(double delta) {
 
 bool Newton::step(const Blocks& blocks, const Problem& problem, const Sweep& sweep, double delta,
                   std::vector<double>& changes) {
-  if (!linearize(blocks, problem, sweep)) return false;
+  std::size_t pressed = 0;  // contacts with an equation at least
+  for (const Block& block : blocks.list())
+    for (std::size_t q = 0; q < block.count && !block.asleep; ++q) pressed += !block.is_free(q);
+  if (pressed > max_unknowns || !linearize(blocks, problem, sweep)) return false;
   equations_.read(blocks, problem);
   read_delassus(blocks, sweep);
   factorize();

@@ -18,10 +18,18 @@ namespace {
 constexpr std::uint32_t default_sweeps = 1000;
 constexpr double default_tolerance = 1e-10;
 constexpr std::uint32_t most_threads = 256;
-// Laws are incompatible where velocities grew by this factor, times the mass ratio of coupled contacts.
-constexpr double runaway_growth = 1e6;
-// The same where the residual is within the tolerance: it is rounding of such impulses.
-constexpr double rounded_growth = 1e9;
+
+}  // namespace
+
+namespace {
+
+const char* complaint(const ilaw_coupled_options& options) {
+  const auto is_positive = [](double x) { return x >= 0.0 && std::isfinite(x); };
+  if (!is_positive(options.tolerance)) return "tolerance is below 0 or not finite";
+  if (!is_positive(options.speed)) return "speed is below 0 or not finite";
+  if (!is_positive(options.rounding)) return "rounding is below 0 or not finite";
+  return options.threads > most_threads ? "threads is above 256" : nullptr;
+}
 
 }  // namespace
 
@@ -32,7 +40,8 @@ std::int32_t Solver::solve(const ilaw_bodies* bodies, const ilaw_contacts* const
   sweep_.use(std::clamp(options.threads, 1U, most_threads));
   report.bad_group = report.bad_contact = report.worst_group = report.worst_contact = -1;
   report.stable_velocity_step = std::numeric_limits<double>::infinity();
-  report.reason = open(bodies, groups, group_count, report);
+  report.reason = complaint(options);
+  if (!report.reason) report.reason = open(bodies, groups, group_count, report);
   const bool refused_here = report.reason != nullptr;
   if (ranks_.any_rank(refused_here)) {
     if (!refused_here) report.reason = "another rank's call was refused";
@@ -44,31 +53,27 @@ std::int32_t Solver::solve(const ilaw_bodies* bodies, const ilaw_contacts* const
     if (!report.reason) report.reason = "another rank's call was refused";
     return ILAW_INVALID_ARGUMENT;
   }
-  report.bad_group = -1;
+  report.bad_group = report.bad_contact = -1;
   sweep_.reset();
-  const double tolerance = options.tolerance > 0.0 ? options.tolerance : default_tolerance;
-  iterations_.begin(options.most_sweeps > 0 ? options.most_sweeps : default_sweeps, tolerance, options.speed,
-                    options.rounding);
-  if (ranks_.any_rank(begins_with_impulses())) iterations_.set_first_size(free_size());
-  set_velocities();
-  const std::int32_t code = iterate(tolerance);
-  if (code < 0) {
+  iterate({options.most_sweeps > 0 ? options.most_sweeps : default_sweeps,
+           options.tolerance > 0.0 ? options.tolerance : default_tolerance, options.rounding, options.speed});
+  if (progress_.code < 0) {
     report.bad_group = sweep_.failed_group();
-    report.reason = sweep_.last_report().reason;
-    return code;
+    report.reason = progress_.reason ? progress_.reason : sweep_.last_report().reason;
+    return progress_.code;
   }
-  report.sweeps = iterations_.count();
-  report.residual = iterations_.residual();
-  report.speed = iterations_.size();
-  report.first_speed = iterations_.first_size();
-  report.method = iterations_.method();
-  report.stalled = iterations_.has_stalled();
+  report.sweeps = progress_.count;
+  report.residual = progress_.residual();
+  report.speed = progress_.size;
+  report.first_speed = progress_.scale;
+  report.method = progress_.method;
+  report.stalled = has_stalled_;
   find_bad_contacts(report);
   find_stable_step(report);
   find_worst_contact(report);
   const std::int32_t refused = evaluate_balance(report);
   if (ranks_.any_rank(refused < 0)) return refused < 0 ? refused : std::int32_t{ILAW_INVALID_ARGUMENT};
-  if (!iterations_.is_solved() || !balance_.empty()) report.energy_error = energy_error();
+  if (!progress_.is_solved() || !balance_.empty()) report.energy_error = energy_error();
   write(report);
   return report.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
 }
@@ -77,15 +82,32 @@ const char* Solver::open(const ilaw_bodies* bodies, const ilaw_contacts* const* 
                          std::int64_t group_count, ilaw_coupled_report& report) {
   if (const char* reason = Bodies::complaint(bodies)) return reason;
   if (group_count < 0 || (group_count > 0 && !groups)) return "groups are missing";
-  problem_.bodies.read(sized::read(bodies));
+  if (const char* reason = problem_.bodies.read(sized::read(bodies))) return reason;
   problem_.group_count = static_cast<std::size_t>(group_count);
   if (problem_.groups.size() < problem_.group_count) problem_.groups.resize(problem_.group_count);
   for (std::size_t g = 0; g < problem_.group_count; ++g) {
     report.bad_group = static_cast<std::int64_t>(g);
     if (!groups[g]) return "a group is null";
+    for (std::size_t f = 0; f < g; ++f)
+      if (groups[f] == groups[g]) return "a group is given twice";
     if (const char* reason = problem_.groups[g].open(*groups[g], problem_.bodies)) return reason;
   }
-  return nullptr;
+  report.bad_group = -1;
+  return complaint_of_overlaps(sized::read(bodies));
+}
+
+// Outputs that begin at the same number, and outputs of contacts that are an input of the bodies.
+const char* Solver::complaint_of_overlaps(const ilaw_bodies& bodies) const {
+  std::vector<const double*> outputs;
+  for (std::size_t g = 0; g < problem_.group_count; ++g) problem_.groups[g].add_outputs(outputs);
+  for (const ilaw_input* a : {&bodies.v_free, &bodies.spin_free, &bodies.v_previous, &bodies.inverse_mass})
+    if (a->values && std::find(outputs.begin(), outputs.end(), a->values) != outputs.end())
+      return "an output of contacts is an input of bodies";
+  for (const ilaw_output* a : {&bodies.velocity, &bodies.spin, &bodies.impulse, &bodies.angular_impulse})
+    if (a->values && bodies.count > 0) outputs.push_back(a->values);
+  std::sort(outputs.begin(), outputs.end());
+  return std::adjacent_find(outputs.begin(), outputs.end()) == outputs.end() ? nullptr
+                                                                             : "two outputs are one array";
 }
 
 // Each copy of a body that has contacts counts, whichever rank it is on.
@@ -108,13 +130,14 @@ const char* Solver::make_blocks(ilaw_coupled_report& report) {
   for (std::size_t g = 0; g < problem_.group_count; ++g)
     colours_.assign(problem_.groups[g], static_cast<std::int32_t>(g), problem_.bodies, blocks_, order_);
   blocks_.allocate();
+  problem_.speeds.resize(order_.size());
   std::atomic<bool> is_refused = false;
   constexpr std::size_t few = 100;
   sweep_.share(blocks_.list().size(), few, [&](std::size_t first, std::size_t end) {
     for (std::size_t b = first; b < end; ++b)
       if (!fill(blocks_.list()[b])) is_refused = true;
   });
-  if (!is_refused) return nullptr;
+  if (!is_refused) return refuse_held_axes(report);
   for (Block& block : blocks_.list()) {
     report.bad_group = block.group;
     if (!fill(block)) break;
@@ -122,24 +145,86 @@ const char* Solver::make_blocks(ilaw_coupled_report& report) {
   return "delassus_form is transverse, and an arm is not along the normal";
 }
 
+// H of an axis along which nothing moves is small instead of 0. The velocity along it is given, so an impulse
+// that a law bounds is right to that part; one that grows as H shrinks has no solution.
+const char* Solver::refuse_held_axes(ilaw_coupled_report& report) {
+  constexpr double larger = 16.0, grown = 8.0, ulps = 64.0, oblique = 1e-9;
+  for (Block& block : blocks_.list()) {
+    const Contacts& group = problem_.group(block);
+    if (!group.may_be_held()) continue;
+    std::array<Columns, 2> impulse{};
+    Columns v_free{}, delassus{};
+    bool is_held = false;
+    for (std::size_t q = 0; q < block.count; ++q)
+      for (std::size_t c = 0; c < 3; ++c) is_held = is_held || group.is_held(block, q, c);
+    if (!is_held) continue;
+    std::vector<double> state(block.stride * static_cast<std::size_t>(block.layout->state_size) + 1);
+    std::array<std::uint8_t, max_stride> status{};
+    sweep_.gather(block, v_free.data());
+    for (std::size_t k = 0; k < 2; ++k) {
+      for (int c = 0; c < block.layout->delassus_size; ++c)
+        for (std::size_t q = 0; q < block.count; ++q) {
+          const auto at = static_cast<std::size_t>(c);
+          const double factor = k == 0 && at < 3 && group.is_held(block, q, at) ? larger : 1.0;
+          delassus[at * max_stride + q] = factor * block.column(block.layout->delassus + c)[q];
+        }
+      ilaw_report found{};
+      if (group.evaluate(
+              block,
+              {v_free.data(), delassus.data(), max_stride, impulse[k].data(), state.data(), status.data()},
+              found) < 0)
+        return nullptr;  // the iterations name it
+    }
+    for (std::size_t q = 0; q < block.count; ++q)
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (!group.is_held(block, q, c)) continue;
+        const double before = std::fabs(impulse[0][c * max_stride + q]), r = impulse[1][c * max_stride + q];
+        const double made = delassus[c * max_stride + q] * std::fabs(r);
+        const double known = ulps * std::numeric_limits<double>::epsilon() * problem_.bodies.free_speed();
+        const double along_axis = block.at(block.layout->normal, q)[c];
+        // Other contacts may still free one whose normal is oblique, or that slips.
+        const bool is_sure = along_axis * along_axis > 1.0 - oblique || status[q] == ILAW_BONDED;
+        if (!(is_sure && std::fabs(r) > grown * before && made > known)) continue;
+        report.bad_group = block.group;
+        report.bad_contact = block.contact[q];
+        const bool is_normal = std::fabs(along_axis) > 0.5;
+        char along[16] = "its normal";
+        if (!is_normal) std::snprintf(along, sizeof along, "axis %zu", c);
+        std::snprintf(
+            message_.data(), message_.size(),
+            "contact %lld of group %lld: body %lld cannot move along %s, and the law '%s' must push it",
+            static_cast<long long>(report.bad_contact), static_cast<long long>(report.bad_group),
+            static_cast<long long>(block.end(0, q)), along, group.law_id());
+        report.message = message_.data();
+        return message_.data();
+      }
+  }
+  return nullptr;
+}
+
 // False where an arm is not along the normal.
 bool Solver::fill(Block& block) {
   for (std::size_t lane = 0; lane < block.count; ++lane)
     if (!problem_.group(block).fill(block, lane, order_[block.order + lane], problem_.bodies)) return false;
   sweep_.read_velocities(block);
+  sweep_.find_speeds(block, problem_.speeds.data() + block.order);
   return true;
 }
 
 // Iterations add changes to the velocities, and with them rounding. At their end velocities are made anew
 // from the impulses; where that moves them by more than the tolerance, iterations go on.
-std::int32_t Solver::iterate(double tolerance) {
+void Solver::iterate(Limits limits) {
   constexpr int most_times = 10;
   constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
+  find_scale(limits);
+  forget_large_impulses();
+  set_velocities();
+  has_stalled_ = false;
   for (int times = 0;; ++times) {
-    if (const std::int32_t code = iterations_.run(blocks_); code < 0) return code;
-    const double limit = std::max(std::max(tolerance, rounding) * iterations_.size(), iterations_.rounding());
+    progress_ = iterations_.run(blocks_, progress_, has_stalled_);
+    const double limit = std::max(std::max(limits.tolerance, rounding) * progress_.scale, limits.rounding);
     const bool moved = ranks_.any_rank(set_velocities() > limit);
-    if (!moved || times == most_times || iterations_.is_over()) return ILAW_OK;
+    if (!moved || times == most_times || !progress_.is_solved() || progress_.is_over()) return;
   }
 }
 
@@ -154,32 +239,49 @@ double Solver::set_velocities() {
   return problem_.bodies.set(ranks_.any() ? everywhere_ : here_);
 }
 
-bool Solver::begins_with_impulses() const {
-  for (const Block& block : blocks_.list())
-    for (std::size_t lane = 0; lane < block.count; ++lane)
-      if (!block.is_free(lane)) return true;
-  return false;
+// The largest velocity that the problem brings to a contact. Contacts of bodies that move together have the
+// rounding of their common speed, which no residual goes below.
+void Solver::find_scale(Limits& limits) {
+  constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
+  std::array<double, 2> most{limits.speed, problem_.bodies.free_speed()};
+  for (const double of_contact : problem_.speeds) most[0] = of_contact > most[0] ? of_contact : most[0];
+  ranks_.largest(most.data(), most.size());
+  limits.speed = std::max(limits.speed, rounding / limits.tolerance * most[1]);
+  progress_ = {};
+  progress_.limits = limits;
+  progress_.scale = std::max(most[0], limits.speed);
 }
 
-// The largest velocity of a contact without impulses, of all ranks.
-double Solver::free_size() {
-  here_.assign(static_cast<std::size_t>(problem_.bodies.count()), {});
-  problem_.bodies.set(here_);
-  Columns velocity{};
+// Impulses of an earlier step whose rounding is too large for this one are no start.
+void Solver::forget_large_impulses() {
+  constexpr double largest_start = 1e-10 / std::numeric_limits<double>::epsilon();
+  const auto begins = [](const Block& block) {
+    for (std::size_t lane = 0; lane < block.count; ++lane)
+      if (!block.is_free(lane)) return true;
+    return false;
+  };
+  Columns made{};
   double most = 0.0;
   for (const Block& block : blocks_.list()) {
-    sweep_.gather(block, velocity.data());
-    for (std::size_t lane = 0; lane < block.count; ++lane)
-      most = std::max(most, size_at(block, velocity.data(), lane));
+    if (!begins(block)) continue;
+    sweep_.respond(block, block.column(block.layout->impulse), block.stride, made.data());
+    for (std::size_t q = 0; q < block.count; ++q) most = std::max(most, size_at(block, made.data(), q));
   }
-  ranks_.largest(&most, 1);
-  return most;
+  progress_.is_cold = !ranks_.any_rank(most > 0.0);
+  if (!ranks_.any_rank(most > largest_start * progress_.scale)) return;
+  progress_.is_cold = true;
+  for (Block& block : blocks_.list())
+    std::fill_n(block.column(block.layout->impulse),
+                static_cast<std::size_t>(block.layout->width) * block.stride, 0.0);
 }
 
 void Solver::find_bad_contacts(ilaw_coupled_report& report) const {
   for (const Block& block : blocks_.list()) {
-    report.bad_count += block.bad_count;
-    if (block.bad_count == 0) continue;
+    std::int64_t by_status = 0;
+    for (std::size_t lane = 0; lane < block.count; ++lane) by_status += block.status[lane] >= ILAW_BAD_INPUT;
+    const std::int64_t bad_count = by_status > 0 ? by_status : block.bad_count;
+    report.bad_count += bad_count;
+    if (bad_count == 0) continue;
     const auto consider = [&](std::size_t lane) {
       const std::int64_t k = block.contact[lane];
       const bool is_first = report.bad_group < 0 || block.group < report.bad_group ||
@@ -261,8 +363,7 @@ double Solver::energy_error() const {
 }
 
 void Solver::find_worst_contact(ilaw_coupled_report& report) {
-  const bool has_grown = report.speed > rounded_growth * report.first_speed;
-  if (iterations_.is_solved() && !has_grown) return;
+  if (progress_.is_solved()) return;
   Columns response{};
   double most = -1.0;
   const Block* worst = nullptr;
@@ -286,11 +387,7 @@ void Solver::find_worst_contact(ilaw_coupled_report& report) {
 
 void Solver::explain(const Block& worst, std::size_t lane, ilaw_coupled_report& report) {
   describe_island(worst.order + lane, report);
-  const bool is_solved = iterations_.is_solved();
-  const double growth = is_solved ? rounded_growth : runaway_growth;
-  if (report.speed > growth * report.mass_ratio * report.first_speed)
-    find_incompatible_laws(worst, lane, report);
-  if (is_solved && !report.other_law) return;
+  if (progress_.is_incompatible) find_incompatible_laws(worst, lane, report);
   const char *law = problem_.group(worst).law_id(), *other = report.other_law;
   std::snprintf(message_.data(), message_.size(),
                 "%s%s%s%s%s after %u iterations: contact %lld of group %lld (law '%s') is off by %s; "
@@ -298,8 +395,8 @@ void Solver::explain(const Block& worst, std::size_t lane, ilaw_coupled_report& 
                 other ? "laws '" : "contacts are not solved", other ? law : "", other ? "' and '" : "",
                 other ? other : "", other ? "' are incompatible" : "", report.sweeps,
                 static_cast<long long>(report.worst_contact), static_cast<long long>(report.worst_group), law,
-                decimal_text(report.residual * report.speed, 3).get(),
-                static_cast<long long>(report.island_contacts), decimal_text(report.mass_ratio, 2).get());
+                decimal_text(progress_.change, 3).get(), static_cast<long long>(report.island_contacts),
+                decimal_text(report.mass_ratio, 2).get());
   report.message = message_.data();
 }
 

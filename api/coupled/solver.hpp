@@ -25,12 +25,14 @@ class Solver {
                    ilaw_coupled_report& report);
   const char* make_blocks(ilaw_coupled_report& report);
   bool fill(Block& block);
+  const char* refuse_held_axes(ilaw_coupled_report& report);
+  const char* complaint_of_overlaps(const ilaw_bodies& bodies) const;
   void split_shared_bodies();
-  std::int32_t iterate(double tolerance);
+  void iterate(Limits limits);
   // From the impulses. Returns the largest change of a velocity.
   double set_velocities();
-  bool begins_with_impulses() const;
-  double free_size();
+  void find_scale(Limits& limits);
+  void forget_large_impulses();
   void find_bad_contacts(ilaw_coupled_report& report) const;
   void find_stable_step(ilaw_coupled_report& report);
   // Where contacts are not solved: which is off by most, and what is coupled with it.
@@ -49,6 +51,8 @@ class Solver {
   Blocks blocks_;
   Problem problem_;
   Iterations iterations_{problem_, ranks_, sweep_};
+  Progress progress_;  // of the last solve: of the island with the largest residual
+  bool has_stalled_ = false;
   std::vector<std::int32_t> order_;
   std::vector<Motion> here_, everywhere_;  // sums of impulses per body, of this rank and of all
   std::vector<double> balance_, counts_;

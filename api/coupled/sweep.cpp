@@ -112,6 +112,21 @@ void Sweep::read_velocities(Block& block) const {
       block.column(layout.v_previous + static_cast<int>(c))[q] += velocity[c * max_stride + q];
 }
 
+void Sweep::find_speeds(const Block& block, double* speeds) const {
+  const Layout& layout = *block.layout;
+  Columns velocity;
+  gather(block, velocity.data());
+  with_form(block, [&](const auto& form) {
+    for (std::size_t q = 0; q < padded(block.count); q += lane_count) {
+      Lanes most = size(form, q, read(form, velocity.data() + q, max_stride));
+      for (const int column : {layout.wall, layout.v_previous})
+        if (column >= 0)
+          most = larger(size(form, q, read(form, block.column(column) + q, block.stride)), most);
+      for (std::size_t k = q; k < std::min(q + lane_count, block.count); ++k) speeds[k] = most[k - q];
+    }
+  });
+}
+
 void Sweep::gather(const Block& block, const Body* bodies, double* velocity) const {
   const Contacts& group = problem_.group(block);
   with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {

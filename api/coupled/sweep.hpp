@@ -22,6 +22,7 @@ struct Problem {
   Bodies bodies;
   std::vector<Contacts> groups;
   std::size_t group_count = 0;
+  std::vector<double> speeds;  // per contact, in the order of the blocks: the largest velocity it is given
 
   const Contacts& group(const Block& block) const { return groups[static_cast<std::size_t>(block.group)]; }
 };
@@ -56,6 +57,9 @@ class Sweep {
   // Writes the present velocities of its contacts to v_smooth, and adds those of its bodies before the step
   // to v_previous, where the law reads them. Before any impulse acts.
   void read_velocities(Block& block) const;
+  // Largest velocity of each lane that the problem brings, with the bodies at their free velocities: free,
+  // before the step, of the wall.
+  void find_speeds(const Block& block, double* speeds) const;
   // H of the law times columns x, into y: columns at distances of max_stride.
   void respond(const Block& block, const double* x, std::size_t x_stride, double* y) const;
   // Adds impulses of all contacts and their moments to the sums per body.

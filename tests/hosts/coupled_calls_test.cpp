@@ -58,7 +58,7 @@ TEST(Coupled, SaysWhatIsWrongWithSpins) {
   scene.arm[1] -= 1e-3;
   expect_refused(scene, 0,
                  {{"delassus_form has spins, and moment is missing", [](Call& c) { c.batch.moment = {}; }},
-                  {"moment has a stride of 0", [](Call& c) { c.batch.moment.node_stride = 0; }},
+                  {"moment overlaps itself", [](Call& c) { c.batch.moment.node_stride = 0; }},
                   {"delassus_form has spins; expected one body on either side, without weights",
                    [](Call& c) { c.contacts.body_weight = ilaw::input(six, 0, 0); }},
                   {"delassus_form has spins, and bodies do not rotate: inverse_inertia is missing",
@@ -82,7 +82,7 @@ TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
        {"counts of bodies are wrong", [](Call& c) { c.bodies.owned_count = -1; }},
        {"counts of bodies are wrong", [](Call& c) { c.bodies.count = c.bodies.owned_count - 1; }},
        {"count is above 2^31 - 2", [](Call& c) { c.bodies.count = std::int64_t{1} << 60; }},
-       {"an output of bodies has a stride of 0", [](Call& c) { c.bodies.velocity.node_stride = 0; }},
+       {"an output of bodies overlaps itself", [](Call& c) { c.bodies.velocity.node_stride = 0; }},
        {"inverse_mass or v_free is missing", [](Call& c) { c.bodies.inverse_mass = {}; }},
        {"inverse_mass or v_free is missing", [](Call& c) { c.bodies.v_free = {}; }},
        {"bodies rotate in dimension 3 alone", [](Call& c) { c.bodies.dimension = 2; }},
@@ -99,9 +99,9 @@ TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
         [](Call& c) { c.contacts.delassus_form = ILAW_DELASSUS_DIAGONAL; }},
        {"node_count is negative", [](Call& c) { c.batch.node_count = -1; }},
        {"node_count is above 2^31 - 2", [](Call& c) { c.batch.node_count = std::int64_t{1} << 60; }},
-       {"impulse has a stride of 0", [](Call& c) { c.batch.impulse.node_stride = 0; }},
-       {"energy has a stride of 0", [](Call& c) { c.batch.energy.component_stride = 0; }},
-       {"state_out has a stride of 0", [](Call& c) { c.batch.state_out.node_stride = 0; }},
+       {"impulse overlaps itself", [](Call& c) { c.batch.impulse.node_stride = 0; }},
+       {"energy overlaps itself", [](Call& c) { c.batch.energy.component_stride = 0; }},
+       {"state_out overlaps itself", [](Call& c) { c.batch.state_out.node_stride = 0; }},
        {"status_stride is 0",
         [](Call& c) {
           c.batch.status = &one_status;
@@ -215,7 +215,7 @@ TEST(Coupled, RefusesFloatsInListsOfABatch) {
                      make_single(amounts[1]);
                      c.batch.amounts = amounts.data();
                    }},
-                  {"an array of amounts has a stride of 0", [](Call& c) {
+                  {"an array of amounts overlaps itself", [](Call& c) {
                      amounts[1] = ilaw::output(&amount, 0, 0);
                      c.batch.amounts = amounts.data();
                    }}});
@@ -329,6 +329,75 @@ TEST(Coupled, CountsNoNumberAsNoSolution) {
   ilaw_coupled_destroy(solver);
   EXPECT_GT(report.bad_count, 0);
   EXPECT_TRUE(std::isfinite(report.work)) << report.work;
+}
+
+// Options and bodies that make no sense are refused by name before anything is solved.
+TEST(Coupled, RefusesNumbersThatMakeNoSense) {
+  Scene scene = cube(tie(), 1);
+  const std::vector<double> v = scene.v;
+  const auto said = [&](const auto& change) {
+    ilaw_bodies bodies = scene.bodies();
+    const ilaw_batch batch = scene.batch();
+    ilaw_contacts contacts = scene.contacts(batch);
+    ilaw_coupled_options options{};
+    std::vector<const ilaw_contacts*> groups{&contacts};
+    change(bodies, contacts, options, groups);
+    try {
+      ilaw::coupled().solve(bodies, groups, options);
+    } catch (const ilaw::coupled_error& refused) {
+      EXPECT_EQ(refused.code(), ILAW_INVALID_ARGUMENT);
+      EXPECT_EQ(scene.v, v);
+      return std::string(refused.what());
+    }
+    return std::string();
+  };
+  static const double bad[] = {std::nan(""), INFINITY, -1.0};
+  for (const double& x : bad) {
+    EXPECT_EQ(said([&](auto&, auto&, auto& o, auto&) { o.tolerance = x; }),
+              "tolerance is below 0 or not finite");
+    EXPECT_EQ(said([&](auto&, auto&, auto& o, auto&) { o.speed = x; }), "speed is below 0 or not finite");
+    EXPECT_EQ(said([&](auto&, auto&, auto& o, auto&) { o.rounding = x; }),
+              "rounding is below 0 or not finite");
+    EXPECT_EQ(said([&](auto& b, auto&, auto&, auto&) { b.inverse_mass = ilaw::input(&x, 0, 0); }),
+              "an inverse_mass of bodies is below 0 or not finite");
+    EXPECT_EQ(said([&](auto& b, auto&, auto&, auto&) { b.inverse_inertia = ilaw::input(&x, 0, 0); }),
+              "an inverse_inertia of bodies is below 0 or not finite");
+    if (!(x < 0.0)) {
+      EXPECT_EQ(said([&](auto&, auto& c, auto&, auto&) { c.body_weight = ilaw::input(&x, 0, 0); }),
+                "a weight is not finite");
+    }
+  }
+  EXPECT_EQ(said([&](auto&, auto&, auto& o, auto&) { o.threads = 4294967295U; }), "threads is above 256");
+  EXPECT_EQ(said([&](auto&, auto& c, auto&, auto& g) { g.push_back(&c); }), "a group is given twice");
+  EXPECT_EQ(
+      said([&](auto& b, auto&, auto&, auto&) { b.velocity = ilaw::output(scene.impulse.data(), 3, 1); }),
+      "two outputs are one array");
+  EXPECT_EQ(said([&](auto& b, auto&, auto&, auto&) { b.v_free = ilaw::input(scene.impulse.data(), 3, 1); }),
+            "an output of contacts is an input of bodies");
+  EXPECT_EQ(
+      said([&](auto& b, auto&, auto&, auto&) { b.impulse = ilaw::output(scene.impulse.data() + 1, 1, 1); }),
+      "an output of bodies overlaps itself");
+}
+
+TEST(Coupled, RefusesAnExchangeThatReturnsNoNumber) {
+  Scene scene = cube(tie(), 1);
+  ilaw_exchange exchange{};
+  exchange.struct_size = sizeof exchange;
+  exchange.sum_bodies = [](void*, double*, std::int64_t) {};
+  exchange.sum = [](void*, double*, std::int64_t) {};
+  exchange.largest = [](void*, double* values, std::int64_t count) {
+    if (count == 4) values[0] = std::nan("");
+  };
+  const ilaw_batch batch = scene.batch();
+  const ilaw_contacts contacts = scene.contacts(batch);
+  ilaw_coupled_options options{};
+  options.exchange = &exchange;
+  try {
+    ilaw::coupled().solve(scene.bodies(), contacts, options);
+    FAIL();
+  } catch (const ilaw::error& refused) {
+    EXPECT_STREQ(refused.what(), "a function of the exchange returned a value that is not a number");
+  }
 }
 
 std::int32_t says_no_number(const ilaw_instance*, const ilaw_batch*, ilaw_report* report) {

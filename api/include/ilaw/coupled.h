@@ -8,7 +8,7 @@
  * solutions that agree to the tolerance, if the solution is unique.
  *
  * Structs grow as those of ilaw.h: struct_size first, new members at the end, absent means zero.
- * Threads: one solver serves one solve at a time; different solvers are independent.
+ * Threads: one solver serves one solve at a time and refuses a second one; different solvers are independent.
  *
  * SPDX-License-Identifier: BSD-3-Clause
  */
@@ -36,7 +36,8 @@ typedef struct ilaw_bodies {
   const int64_t* id;           /* optional: global number of each body. Iterations visit contacts in the order
                                   of these numbers, not in that of the arrays. Null: the index */
   ilaw_input inverse_mass;     /* 1 or d [1/kg]; 0: immovable, along this axis. Component stride 0: one value.
-                                  d values: slides and driven axes, in the host's axes */
+                                  d values: slides and driven axes, in the host's axes. A contact whose law
+                                  must push a body along an axis without freedom is refused */
   ilaw_input inverse_inertia;  /* optional, d = 3: xx yy zz xy xz yz in the host's axes [1/(kg m^2)];
                                   component stride 0: one value, a sphere's. Absent: no rotation */
   ilaw_input v_free;           /* d: velocity without contacts [m/s] */
@@ -113,9 +114,8 @@ typedef struct ilaw_coupled_options {
   uint32_t most_sweeps;          /* largest number of iterations; 0: 1000 */
   double tolerance;              /* of the residual; 0: 1e-10 */
   const ilaw_exchange* exchange; /* null: one process */
-  double speed;                  /* the residual is relative to no smaller velocity; 0: no limit. The largest
-                                    speed of the bodies, where they move together: differences of velocities
-                                    have its rounding */
+  double speed;                  /* the residual is relative to no smaller velocity; 0: only to that at which
+                                    the tolerance is the rounding of the largest speed of the bodies */
   double rounding;               /* velocity [m/s] to which contacts are known, such as the rounding of a gap
                                     over the step; 0: none. A residual below it that iterations no longer lower
                                     counts as solved: redundant contacts, whose gaps differ by rounding, have
@@ -139,30 +139,32 @@ enum {
 typedef struct ilaw_coupled_report {
   uint32_t struct_size;
   uint32_t sweeps;                  /* iterations */
-  double residual;                  /* largest |H dr| over the contacts in the last iteration, relative to the
-                                       largest velocity of a contact, before or by an impulse. A spin counts
+  double residual;                  /* largest |H dr| over the contacts in the last iteration, or the rounding
+                                       of impulses above 1e4 first_speed, relative to first_speed. A spin counts
                                        as a velocity, times the root of h/j: the means of H and J */
   double work;                      /* of all impulses and moments, with the final velocities [J] */
   double energy[ILAW_ENERGY_COUNT]; /* sums over contacts, 0 where a batch has no energy array */
   int64_t bad_count;                /* contacts with bad input */
   int64_t bad_group;                /* of the first of them, or of the group that was refused; -1: none */
   int64_t bad_contact;              /* the first of them; -1: none */
-  const char* reason;               /* static text, null when none */
+  const char* reason;               /* text until the solver's next call, null when none */
   double stable_velocity_step; /* as of ilaw_report, with the masses divided among the contacts that push;
                                   infinity: no limit */
   uint32_t method;             /* ILAW_METHOD_* */
   uint32_t stalled;            /* 1: the residual is above the tolerance, and the last half of the
-                                  iterations did not lower it by a tenth */
+                                  iterations over an island did not lower it by a tenth */
   int64_t worst_group;         /* contact with the largest residual, where that is above the tolerance;
                                   -1: none */
   int64_t worst_contact;
-  /* Ids of the law of the worst contact and of another law at its bodies (or the same law), where the two are
-   * incompatible: impulses grow without bound. Null: not found. */
+  /* Ids of the law of the worst contact and of another law at its bodies (or the same law), where no velocity
+   * suits both: each iteration adds the same impulses, along normals or in bonds, and moves nothing. Null:
+   * not found. */
   const char* law;
   const char* other_law;
-  double speed; /* largest velocity of a contact, before or by an impulse, in the last iteration, or that
-                   of the options: residual * speed is a velocity */
-  double first_speed;  /* the same of the first iteration, or without impulses where it begins with some */
+  double speed;       /* largest velocity of a contact, before or by an impulse, in the last iteration */
+  double first_speed; /* largest velocity that the problem brings to the contacts of the worst island: without
+                         impulses, before the step, of walls, or that of the options. residual * first_speed
+                         is a velocity */
   double energy_error; /* sum over contacts of |r.s|/2, where velocities are off by s from those of the last
                           evaluation: the largest difference of `work` and energies [J]; 0 where the
                           residual is within the tolerance and no batch has energies or amounts */
@@ -170,8 +172,8 @@ typedef struct ilaw_coupled_report {
                               worst one, and the ratio of the largest to the smallest mass of their bodies */
   double mass_ratio;
   const char* message; /* what is not solved, as a sentence that names contact and laws, until the solver's
-                          next call; null: the residual is within the tolerance or rounding, and
-                          no laws are incompatible */
+                          next call; null: the residual is within the tolerance, or the rounding of impulses
+                          and below 1e-8, or within that of the options */
 } ilaw_coupled_report;
 
 /* The work arrays of solves, which grow as needed and are kept. */

@@ -26,6 +26,17 @@ inline ilaw_contacts contacts_of(const interface& law, ilaw_delassus_form form, 
   return made;
 }
 
+// Thrown where a call is refused; its report names the contact, if it is one.
+class coupled_error : public error {
+ public:
+  coupled_error(ilaw_result code, const ilaw_coupled_report& report)
+      : error(code, report.reason ? report.reason : "coupled contacts were refused"), report_(report) {}
+  const ilaw_coupled_report& report() const { return report_; }
+
+ private:
+  ilaw_coupled_report report_;
+};
+
 // Movable; one solve at a time.
 class coupled {
  public:
@@ -33,7 +44,8 @@ class coupled {
     if (!handle_) throw std::bad_alloc();
   }
 
-  // Throws where the call is refused. Contacts with bad input are no exception: report.bad_count.
+  // Throws coupled_error where the call is refused. Contacts with bad input are no exception:
+  // report.bad_count.
   ilaw_coupled_report solve(const ilaw_bodies& bodies, std::span<const ilaw_contacts* const> groups,
                             ilaw_coupled_options options = {}) {
     options.struct_size = sizeof options;
@@ -41,7 +53,7 @@ class coupled {
     report.struct_size = sizeof report;
     const std::int32_t code = ilaw_coupled_solve(handle_.get(), &bodies, groups.data(),
                                                  static_cast<std::int64_t>(groups.size()), &options, &report);
-    if (code < 0) throw error(code, report.reason ? report.reason : "coupled contacts were refused");
+    if (code < 0) throw coupled_error(code, report);
     return report;
   }
   ilaw_coupled_report solve(const ilaw_bodies& bodies, const ilaw_contacts& group,

@@ -47,12 +47,14 @@ class Report:
     """Findings of a solve.
 
     sweeps: iterations. residual: largest change of a contact's velocity by its own impulse in the last iteration,
-    relative to the largest velocity. work [J]: of all impulses, with the velocities that came out. energy (4,)
-    [J]: sums of the columns `Energy`. bad_*: contacts with bad input, -1: none. stable_velocity_step [s]: as of
-    `ilaw.Report`, with masses divided among contacts. method: of the last iteration. stalled: the residual is above
-    the tolerance and falls no more. worst_*: contact with the largest residual, -1: none. incompatible: ids of two
-    laws whose impulses grow without bound. energy_error [J]: largest difference of work and energies. message: what
-    is not solved, as a sentence; empty: nothing. All of this rank, but sweeps, residual, method and stalled.
+    relative to first_speed [m/s], the largest velocity that the problem brings. speed [m/s]: largest velocity of a
+    contact, before or by an impulse, in the last iteration. work [J]: of all impulses, with the velocities that came
+    out. energy (4,) [J]: sums of the columns `Energy`. bad_*: contacts with bad input, -1: none.
+    stable_velocity_step [s]: as of `ilaw.Report`, with masses divided among contacts. method: of the last iteration.
+    stalled: the residual is above the tolerance and falls no more. worst_*: contact with the largest residual, -1:
+    none. incompatible: ids of two laws that no velocity suits. energy_error [J]: largest difference of work and
+    energies. message: what is not solved, as a sentence; empty: nothing. All of this rank, but sweeps, residual,
+    method and stalled.
     """
 
     sweeps: int
@@ -71,6 +73,8 @@ class Report:
     incompatible: tuple[str, str] | None
     energy_error: float
     message: str
+    speed: float
+    first_speed: float
 
 
 class Exchange(Protocol):
@@ -425,4 +429,6 @@ class Solver(NotCopied):
             (report.law.decode(), report.other_law.decode()) if report.law and report.other_law else None,
             report.energy_error,
             report.message.decode(errors="replace") if report.message else "",
+            report.speed,
+            report.first_speed,
         )

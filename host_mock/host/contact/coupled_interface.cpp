@@ -123,6 +123,16 @@ void CoupledInterface::check_driven(const StepView& step, const Dofs& v) const {
   }
 }
 
+void CoupledInterface::refuse_driven(std::size_t place) const {
+  const ContactArrays& contacts = interface_.contacts_;
+  const std::int32_t k = group_.contact(place);
+  Eigen::Index axis = 0;
+  if (!contacts.law_delassus.empty()) contacts.vector(contacts.law_delassus, k).minCoeff(&axis);
+  throw std::runtime_error(
+      formatted("node %d is driven along axis %td against '%s' (law '%s'), which cannot give way",
+                interface_.node_of(k), axis, interface_.name().c_str(), interface_.setup().law.c_str()));
+}
+
 // Velocity that the law sees, without the contact's own impulse.
 Vector CoupledInterface::v_free_of(std::size_t place, const Dofs& v) const {
   const std::int32_t contact = group_.contact(place);

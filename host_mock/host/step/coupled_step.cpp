@@ -129,8 +129,12 @@ void CoupledStep::solve_groups(const StepView& step, double speed, const double*
   options.threads = omp_in_parallel() ? 1 : static_cast<std::uint32_t>(omp_get_max_threads());
   try {
     report_ = solver_.solve(bodies, given_, options);
-  } catch (const ilaw::error&) {
+  } catch (const ilaw::coupled_error& refused) {
     for (const CoupledInterface& interface : interfaces_) interface.check(report_, -1, step.dt);
+    const ilaw_coupled_report& report = refused.report();
+    if (report.bad_group >= 0 && report.bad_contact >= 0)
+      interfaces_[static_cast<std::size_t>(report.bad_group)].refuse_driven(
+          static_cast<std::size_t>(report.bad_contact));
     throw;
   }
   for (std::size_t i = 0; i < interfaces_.size(); ++i) {
@@ -149,8 +153,7 @@ std::string CoupledStep::explain() const {
   constexpr double beyond_rounding = 1e-6;
   constexpr std::int64_t most_named = 50;
   if (!report_.message || report_.worst_group < 0) return "";
-  const bool is_stuck = report_.residual * report_.speed > beyond_rounding * report_.first_speed &&
-                        report_.island_contacts <= most_named;
+  const bool is_stuck = report_.residual > beyond_rounding && report_.island_contacts <= most_named;
   if (!report_.other_law && !is_stuck) return "";
   const CoupledInterface& worst = interfaces_[static_cast<std::size_t>(report_.worst_group)];
   return formatted(
