@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "blocks.hpp"
 
-#include <ilaw/ilaw.h>
-
 #include <algorithm>
 
 namespace ilaw::coupled {
@@ -95,8 +93,10 @@ void Blocks::give_back(Blocks& to) const {
       for (int c = 0; c < layout.state_size; ++c)
         target.column(layout.state_out + c)[at] = block.column(layout.state_out + c)[lane];
       target.status[at] = block.status[lane];
-      if (block.bad_count > 0 && block.status[lane] >= ILAW_BAD_INPUT) target.reason = block.reason;
       target.asleep = target.asleep && block.asleep;
+      if (!block.is_refused) continue;
+      target.is_refused = true;
+      target.reason = block.reason;
     }
   }
 }

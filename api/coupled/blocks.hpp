@@ -49,8 +49,7 @@ struct Block {
   std::size_t order = 0;  // place of its first contact in the order of the colors
   bool asleep = false;    // out of reach and without impulse: left out of iterations
   double square = 0.0;    // of its contacts in the last iteration: dr.H dr
-  std::int64_t bad_count = 0;
-  std::int64_t first_bad = -1;
+  bool is_refused = false;  // the last evaluation found bad input: those lanes have the status of it
   const char* reason = nullptr;
 
   double* column(int c) { return values + static_cast<std::size_t>(c) * stride; }

@@ -317,6 +317,16 @@ bool Contacts::fill(Block& block, std::size_t lane, std::int64_t k, const Bodies
   return true;
 }
 
+void Contacts::close_gaps(Block& block, double known_velocity, double part, const double* speeds) const {
+  if (layout_.gap < 0) return;
+  double* gap = block.column(layout_.gap);
+  for (std::size_t q = 0; q < block.count; ++q) {
+    const double offset = layout_.gap_offset < 0 ? 0.0 : block.column(layout_.gap_offset)[q];
+    const double known = theirs_.position_step * std::max(known_velocity, part * speeds[q]);
+    if (gap[q] > offset && gap[q] - offset <= known) gap[q] = offset;
+  }
+}
+
 // A body that a side names twice has the sum of the weights, so that H is that of one body.
 void Contacts::fill_weights(Block& block, std::size_t lane, std::int64_t k) const {
   const auto end_at = [&](std::uint32_t e) -> std::int32_t& { return block.ends[e * block.stride + lane]; };

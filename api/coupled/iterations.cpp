@@ -245,7 +245,7 @@ bool Iterations::are_incompatible(Blocks& blocks, Progress& progress) {
     for (std::size_t b = 0; b < start_.size(); ++b)
       moved = std::max(moved, largest(problem_.bodies.now()[b].velocity - start_[b].velocity));
     if (!before.empty() && off <= steady * progress.square && moved <= still * progress.change)
-      return progress.is_incompatible = grows_along_normals(blocks);
+      return progress.is_incompatible = grows_along_normals(blocks) && grows_without_end(blocks, progress);
     before = step_;
   }
   return false;
@@ -262,6 +262,23 @@ bool Iterations::grows_along_normals(const Blocks& blocks) const {
       if (dot(by, block.at(block.layout->impulse, q)) < 0.0) return false;
     }
   return true;
+}
+
+// Follows the last changes by doubling: bonds fail at their strengths, which ends the growth. False: that
+// happened, and iterations go on from there.
+bool Iterations::grows_without_end(Blocks& blocks, Progress& progress) {
+  constexpr double other = 2.0;
+  std::vector<double> growth(3 * scales_.size());
+  for (std::size_t i = 0; i < growth.size(); ++i)
+    growth[i] = scales_[i / 3] > 0.0 ? step_[i] / scales_[i / 3] : 0.0;
+  const double square = progress.square;
+  for (double part = 1.0; !progress.is_over() && progress.is_known(); part *= 2.0) {
+    for (std::size_t i = 0; i < growth.size(); ++i) correction_[i] = part * growth[i];
+    move(blocks, progress, correction_);
+    if (progress.is_done() || !(progress.square > square / other && progress.square < other * square))
+      return false;
+  }
+  return !progress.is_known();
 }
 
 void Iterations::add_changes(Blocks& blocks, const std::vector<double>& changes) {

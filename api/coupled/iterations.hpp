@@ -59,6 +59,7 @@ class Iterations {
   Outcome newton(Blocks& blocks, Progress& progress);
   bool are_incompatible(Blocks& blocks, Progress& progress);
   bool grows_along_normals(const Blocks& blocks) const;
+  bool grows_without_end(Blocks& blocks, Progress& progress);
   Outcome splitting(Blocks& blocks, Progress& progress, std::uint32_t most, std::size_t depth);
 
   // The next iteration starts from the velocities that this makes.

@@ -74,6 +74,7 @@ struct Progress {
   bool has_stalled() const { return !is_solved() && !(least < 0.9 * least_in_first_half); }
 
   // Impulses that are so large that their rounding is above 1e-8 of the scale solve nothing.
+  bool is_known() const { return std::numeric_limits<double>::epsilon() * size <= 1e-8 * scale; }
   double least_known() const { return std::min(rounding(), 1e-8 * scale); }
   bool is_within(double known) const {
     return rounding() <= 2e-6 * scale && (residual() <= limits.tolerance || change <= known);

@@ -217,6 +217,9 @@ void Solver::iterate(Limits limits) {
   constexpr int most_times = 10;
   constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
   find_scale(limits);
+  for (Block& block : blocks_.list())
+    problem_.group(block).close_gaps(block, limits.rounding, limits.tolerance,
+                                     problem_.speeds.data() + block.order);
   forget_large_impulses();
   set_velocities();
   has_stalled_ = false;
@@ -277,24 +280,17 @@ void Solver::forget_large_impulses() {
 
 void Solver::find_bad_contacts(ilaw_coupled_report& report) const {
   for (const Block& block : blocks_.list()) {
-    std::int64_t by_status = 0;
-    for (std::size_t lane = 0; lane < block.count; ++lane) by_status += block.status[lane] >= ILAW_BAD_INPUT;
-    const std::int64_t bad_count = by_status > 0 ? by_status : block.bad_count;
-    report.bad_count += bad_count;
-    if (bad_count == 0) continue;
-    const auto consider = [&](std::size_t lane) {
+    for (std::size_t lane = 0; lane < block.count && block.is_refused; ++lane) {
+      if (block.status[lane] < ILAW_BAD_INPUT) continue;
+      ++report.bad_count;
       const std::int64_t k = block.contact[lane];
       const bool is_first = report.bad_group < 0 || block.group < report.bad_group ||
                             (block.group == report.bad_group && k < report.bad_contact);
-      if (!is_first) return;
+      if (!is_first) continue;
       report.bad_group = block.group;
       report.bad_contact = k;
       report.reason = block.reason;
-    };
-    if (block.first_bad >= 0 && block.first_bad < static_cast<std::int64_t>(block.count))
-      consider(static_cast<std::size_t>(block.first_bad));
-    for (std::size_t lane = 0; lane < block.count; ++lane)
-      if (block.status[lane] >= ILAW_BAD_INPUT) consider(lane);
+    }
   }
 }
 

@@ -50,6 +50,14 @@ void prefetch_next(const Block& block, std::size_t lane) {
   for (std::size_t k = 0; k < 4 * columns; k += 8) __builtin_prefetch(next + k, 0, 2);
 }
 
+// A law that gives no status, or not that of bad input, names one node at least.
+void mark_refused(Block& block, std::int64_t first_bad) {
+  const auto is_bad = [](std::uint8_t status) { return status >= ILAW_BAD_INPUT; };
+  if (std::any_of(block.status, block.status + block.count, is_bad)) return;
+  const auto lane = static_cast<std::size_t>(first_bad);
+  block.status[lane < block.count ? lane : 0] = ILAW_BAD_INPUT;
+}
+
 // Whether the last evaluation of a contact left no trace.
 bool has_not_acted(const Block& block, std::size_t lane) {
   const Layout& layout = *block.layout;
@@ -281,10 +289,11 @@ bool Sweep::evaluate(Block& block, ThreadData& own) const {
                             nullptr,           block.status,
                             nullptr,           nullptr};
   ilaw_report& report = own.report;
+  if (block.is_refused) std::fill_n(block.status, block.count, std::uint8_t{ILAW_FREE});
   const std::int32_t code = problem_.group(block).evaluate(block, call, report);
-  block.bad_count = code == ILAW_BAD_NODES ? report.bad_count : 0;
-  block.first_bad = report.first_bad_node;
+  block.is_refused = code == ILAW_BAD_NODES;
   block.reason = report.reason;
+  if (block.is_refused) mark_refused(block, report.first_bad_node);
   // NaN, or below 0, would pass for no limit at all.
   const bool has_step = report.stable_velocity_step >= 0.0;
   if (report.stable_velocity_step > 0.0)

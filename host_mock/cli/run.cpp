@@ -50,6 +50,7 @@ class Run {
         options_(options),
         integrator_(*scene.model, scene.loads, scene.interfaces, scene.dt, scene.prestress),
         fields_(scene, options.folder) {
+    if (options.tolerance) integrator_.set_tolerance(*options.tolerance);
     if (options.resume) {
       resume();
       return;
@@ -332,6 +333,12 @@ void add_run(CLI::App& app, int& code) {
   command->add_flag("--resume", options->resume,
                     "Continue from the checkpoint in the folder, to the same bits");
   add_threads(*command, options->threads);
+  command
+      ->add_option("--tolerance", options->tolerance,
+                   "Residual to which contacts that share nodes are solved, relative to the largest velocity "
+                   "of the step [1e-10]")
+      ->check(CLI::Range(1e-15, 0.1))
+      ->excludes("--resume");
   command
       ->add_option("--set", *settings,
                    "/pointer=value,value,...: a run with each value of a key of the scene, --threads at a "

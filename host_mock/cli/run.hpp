@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct RunOptions {
   std::int64_t checkpoint_every = 0;  // steps; 0: never
   bool resume = false;
   int threads = 1;
+  std::optional<double> tolerance = {};  // of coupled contacts
   bool shows_progress = true;
   bool tells_of_start = true;  // on stdout
 };

@@ -4,11 +4,11 @@
 namespace ilaw::host::testing {
 namespace {
 
-// The iterations end at a solution of each law: Signorini and Coulomb, to rounding of the top speed. Contact
+// The iterations end at a solution of each law: Signorini and Coulomb, to the tolerance and rounding of the top speed. Contact
 // arrives at gap 0, but turns a node that was leaving no faster than it left; friction is Coulomb's unless it
 // would push a node whose slip turned round, which it may do less than that.
 void expect_law(const Interface& interface, int contact_index, const Dofs& v, const Dofs& before,
-                double h_step, double friction, double speed) {
+                double h_step, double friction, double speed, double residual) {
   const Vector relative = interface.relative(contact_index, v) - interface.obstacle().velocity();
   const Vector impulse = interface.impulse(contact_index), normal = interface.normal(contact_index);
   const Vector relative_before = interface.relative(contact_index, before);
@@ -16,7 +16,7 @@ void expect_law(const Interface& interface, int contact_index, const Dofs& v, co
   const double least = std::min(arrival, -relative_before.dot(normal));
   const double r_n = impulse.dot(normal), v_n = relative.dot(normal);
   const Vector r_t = impulse - r_n * normal, v_t = relative - v_n * normal;
-  const double tolerance = 1e-13 * speed, h = interface.delassus(contact_index);
+  const double tolerance = (1e-13 + residual) * speed, h = interface.delassus(contact_index);
   EXPECT_GE(r_n, 0.0);
   if (r_n == 0.0) {
     EXPECT_GE(v_n, least - tolerance);
@@ -44,7 +44,7 @@ std::array<std::int64_t, 2> expect_laws(const Scene& scene, Integrator& integrat
     for (std::size_t k = 0; k < 2; ++k)
       for (const std::int32_t contact_index : scene.interfaces[k]->active()) {
         expect_law(*scene.interfaces[k], contact_index, integrator.velocity(), before, scene.dt, friction[k],
-                   speed);
+                   speed, integrator.tally().coupling_tolerance);
         pressed[k] += !scene.interfaces[k]->impulse(contact_index).isZero(0.0);
       }
   }
@@ -52,12 +52,15 @@ std::array<std::int64_t, 2> expect_laws(const Scene& scene, Integrator& integrat
 }
 
 TEST(NodeToFacet, EveryContactObeysItsLawAtEveryStep) {
-  auto [scene, integrator] = simulation_of(shipped("two_blocks"));
-  const auto pressed = expect_laws(scene, integrator, {0.5, 0.3});
-  EXPECT_GT(pressed[0] + pressed[1], 500);
-  EXPECT_GT(integrator.tally().sweeps_max, 3);
-  EXPECT_EQ(integrator.tally().unconverged, 0);
-  EXPECT_LE(integrator.tally().coupling_residual_max, 1e-14);
+  for (const double tolerance : {CoupledStep::default_tolerance, 1e-14}) {
+    auto [scene, integrator] = simulation_of(shipped("two_blocks"));
+    integrator.set_tolerance(tolerance);
+    const auto pressed = expect_laws(scene, integrator, {0.5, 0.3});
+    EXPECT_GT(pressed[0] + pressed[1], 500);
+    EXPECT_GT(integrator.tally().sweeps_max, 3);
+    EXPECT_EQ(integrator.tally().unconverged, 0);
+    EXPECT_LE(integrator.tally().coupling_residual_max, tolerance);
+  }
 }
 
 // The block is stopped by the floor, and then by the ball.
@@ -180,6 +183,7 @@ constexpr int too_long = 2100;  // for Newton's method, too
 TEST(Column, EachContactCarriesWhatLiesAboveIt) {
   for (const int balls : {12, 30}) {
     auto [scene, integrator] = simulation_of(column(balls));
+    integrator.set_tolerance(1e-14);
     while (integrator.steps() < scene.steps) {
       integrator.step();
       if (integrator.steps() == 1) continue;  // takes the kick of half a step out, too
@@ -189,8 +193,8 @@ TEST(Column, EachContactCarriesWhatLiesAboveIt) {
       }
       EXPECT_LE(integrator.velocity().cwiseAbs().maxCoeff(), 1e-12) << "balls " << balls;
     }
-    EXPECT_LE(integrator.tally().sweeps_max, 100) << "balls " << balls;
-    EXPECT_LE(integrator.tally().coupling_residual_max, 1e-14) << "balls " << balls;
+    EXPECT_LE(integrator.tally().sweeps_max, 110) << "balls " << balls;
+    EXPECT_LE(integrator.tally().coupling_residual_max, 1e-13) << "balls " << balls;
     EXPECT_EQ(integrator.tally().unconverged, 0) << "balls " << balls;
     EXPECT_TRUE(integrator.warnings().empty()) << "balls " << balls;
   }
@@ -229,19 +233,19 @@ TEST(Column, WarnsWhenTooLong) {
   integrator.start();
   EXPECT_GE(integrator.tally().sweeps_max, 999);
   EXPECT_EQ(integrator.tally().unconverged, 1);
-  double largest = 0.0, size = 0.0, energy = 0.0;
+  const double arrives = 0.5 * 10.0 * 0.001;  // half a step's kick
+  double largest = 0.0, energy = 0.0;
   for (const auto& contact : scene.interfaces) {
     const int contact_index = contact->active().at(0);
     const double r = contact->impulse(contact_index)[0], own = contact->delassus(contact_index) * r,
                  left = contact->relative(contact_index, integrator.velocity())[0], v_free = left - own;
     largest = std::max(largest, std::abs(own - std::max(0.0, -v_free)));
-    size = std::max(size, own);
     energy += 0.5 * std::abs(r * left);  // what r does beyond r.(v^- + 0)/2, as the law accounts for it
   }
   EXPECT_NEAR(integrator.tally().coupling_energy, energy, 1e-3 * energy);
   EXPECT_GT(largest, 0.0);
-  EXPECT_GE(integrator.tally().coupling_residual_max, (1.0 - 1e-3) * largest / size);
-  EXPECT_LE(integrator.tally().coupling_residual_max, 3.0 * largest / size);
+  EXPECT_GE(integrator.tally().coupling_residual_max, (1.0 - 1e-3) * largest / arrives);
+  EXPECT_LE(integrator.tally().coupling_residual_max, 3.0 * largest / arrives);
   ASSERT_EQ(integrator.warnings().size(), 1U);
   EXPECT_THAT(integrator.warnings()[0],
               HasSubstr("not solved in 1 of 1 steps, the start included: residual up to"));

@@ -31,8 +31,7 @@ TEST_P(SceneThatFailed, IsSolved) {
   const StressVerdict verdict = stress_scene(scene);
   EXPECT_EQ(verdict.ending, StressEnding::passed) << verdict.reason;
   EXPECT_GT(verdict.figures.node_steps, 200);
-  // The tolerance of coupled contacts, times the largest mass ratio.
-  EXPECT_LT(verdict.figures.added, 1e5 * CoupledStep::tolerance);
+  EXPECT_LT(verdict.figures.added, 1e-9);
   EXPECT_LE(verdict.figures.worst_bound, 1.0);
 }
 
@@ -68,12 +67,13 @@ TEST(CoupledContacts, AreSolvedAtAMassRatioOf1e5) {
   while (integrator.steps() < 200) integrator.step();
   EXPECT_EQ(integrator.tally().unconverged, 0);
   EXPECT_GT(integrator.tally().sweeps_max, 20);  // so that it is accelerated
-  EXPECT_LE(integrator.tally().coupling_residual_max, CoupledStep::tolerance);
+  EXPECT_LE(integrator.tally().coupling_residual_max, CoupledStep::default_tolerance);
 }
 
 // Ties that hold make one body, whatever the masses: its velocity is momentum over mass. Sweeps alone leave
 // shocks on a pile of masses of 1:1e7 unsolved after 1000 of them.
 TEST(CoupledContacts, MakeOneBodyOfTies) {
+  constexpr double tolerance = 1e-14;
   Draw draw(3);
   int hard = 0;
   for (int pile = 0; pile < 40 && !HasFailure(); ++pile) {
@@ -101,9 +101,10 @@ TEST(CoupledContacts, MakeOneBodyOfTies) {
       scene["interfaces"][0]["against"]["nodes"].push_back(i);
     }
     auto [read, integrator] = simulation_of(scene);
+    integrator.set_tolerance(tolerance);
     while (integrator.steps() < read.steps) ASSERT_NO_THROW(integrator.step()) << "pile " << pile;
     hard += integrator.tally().sweeps_max > 100 ? 1 : 0;
-    const double bound = CoupledStep::tolerance * count * heaviest / lightest * fastest;
+    const double bound = tolerance * count * heaviest / lightest * fastest;
     for (Eigen::Index i = 0; i < 2 * count; ++i)
       ASSERT_NEAR(integrator.velocity()[i], momentum[static_cast<std::size_t>(i % 2)] / mass_sum, bound)
           << "pile " << pile;
@@ -118,7 +119,7 @@ TEST(CoupledContacts, AreSolvedWhateverNodesElsewhereDo) {
       run_to_end(read_scene(scene_that_failed("bonds_and_a_rising_floor"), "scene.json"));
   EXPECT_EQ(integrator.tally().unconverged, 0);
   EXPECT_GT(integrator.tally().sweeps_max, 30) << "iterations over all contacts";
-  EXPECT_LE(integrator.tally().coupling_residual_max, CoupledStep::tolerance);
+  EXPECT_LE(integrator.tally().coupling_residual_max, 1e-8) << "rounding of impulses at the limit of a bond";
   const EnergyReport energy = integrator.energy();
   EXPECT_LE(std::abs(energy.reaction_work), 1e-8 * energy.scale);
 }
@@ -148,9 +149,7 @@ TEST_P(LawsThatContradict, EndTheRunWithTheReason) {
   const EnergyReport energy = integrator.energy();
   EXPECT_LE(energy.balance_error, 1e-12);
   const double dissipated = energy.by_law[ILAW_ENERGY_FRICTION] + energy.by_law[ILAW_ENERGY_IMPACT];
-  double by_laws = 0.0;
-  for (const double part : energy.by_law) by_laws += std::abs(part);
-  EXPECT_LE(std::abs(energy.reaction_work), 1e-4 * std::max(energy.scale, by_laws));
+  EXPECT_LE(std::abs(energy.reaction_work), integrator.tally().coupling_energy + 1e-12 * energy.scale);
   // The plane that moves puts in what its delayed bond takes: a step of 7.7 s stretches that by metres.
   if (GetParam() != std::string("bond_that_leaves_a_floor")) {
     EXPECT_LE(dissipated, energy.scale + std::abs(energy.reaction_work));
@@ -158,8 +157,19 @@ TEST_P(LawsThatContradict, EndTheRunWithTheReason) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Stress, LawsThatContradict,
-                         ::testing::Values("rough_wedge", "bond_that_leaves_a_floor", "plane_against_a_bond",
+                         ::testing::Values("bond_that_leaves_a_floor", "plane_against_a_bond",
                                            "brittle_bond_against_a_rigid_one"));
+
+// A point between a floor without slip and a bond that softens above it, at a small angle: impulses grow far
+// beyond those of a single contact, and solutions exist. Whatever is not solved is within the reported error.
+TEST(CoupledContacts, AreSolvedInARoughWedge) {
+  auto [scene, integrator] = run_to_end(read_scene(scene_that_failed("rough_wedge"), "scene.json"));
+  EXPECT_LE(integrator.tally().unconverged, 1);
+  const EnergyReport energy = integrator.energy();
+  EXPECT_LE(energy.balance_error, 1e-12);
+  EXPECT_LE(std::abs(energy.reaction_work), integrator.tally().coupling_energy);
+  EXPECT_LE(integrator.tally().coupling_energy, 1e-3 * energy.scale);
+}
 
 // Five bonds between masses of 1:6e3 that soften are not solved: nothing says that they contradict each
 // other.

@@ -116,6 +116,7 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
        {{"sweeps", tally.sweeps},
         {"sweeps_max", tally.sweeps_max},
         {"residual_max", tally.coupling_residual_max},
+        {"tolerance", tally.coupling_tolerance},
         {"energy", tally.coupling_energy},
         {"steps_unconverged", tally.unconverged}}},
       {"seconds",

@@ -32,14 +32,16 @@ void for_each_member(Any& tally, Work work) {
     work(*count);
   work(tally.sweeps_max);
   for (auto* value :
-       {&tally.coupling_residual_max, &tally.coupling_energy, &tally.penetration_max, &tally.stable_step})
+       {&tally.coupling_residual_max, &tally.coupling_tolerance, &tally.coupling_energy,
+        &tally.penetration_max, &tally.stable_step})
     work(*value);
   for (auto& count : tally.status_counts) work(count);
 }
 
 }  // namespace
 
-void Accounts::add_solution(const ilaw_coupled_report& solution) {
+void Accounts::add_solution(const ilaw_coupled_report& solution, double tolerance) {
+  tally_.coupling_tolerance = tolerance;
   tally_.sweeps += solution.sweeps;
   tally_.sweeps_max = std::max(tally_.sweeps_max, static_cast<int>(solution.sweeps));
   tally_.coupling_residual_max = std::max(tally_.coupling_residual_max, solution.residual);
@@ -149,7 +151,7 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
         "contacts that share nodes are not solved in %lld of %lld steps, the start included: residual up to %.1e after %d sweeps, "
         "expected %g; the energy is wrong by up to %.2g, where %.2g is the largest in the run",
         static_cast<long long>(tally_.unconverged), static_cast<long long>(steps) + 1,
-        tally_.coupling_residual_max, static_cast<int>(CoupledStep::most_sweeps), CoupledStep::tolerance,
+        tally_.coupling_residual_max, static_cast<int>(CoupledStep::most_sweeps), tally_.coupling_tolerance,
         tally_.coupling_energy, energy.scale));
   if (tally_.left_surface > 0)
     warnings.push_back(formatted(

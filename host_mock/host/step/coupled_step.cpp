@@ -123,7 +123,7 @@ void CoupledStep::solve_groups(const StepView& step, double speed, const double*
   bodies.velocity = ilaw::output(velocity_.data(), dimension, 1);
   ilaw_coupled_options options{};
   options.most_sweeps = most_sweeps;
-  options.tolerance = tolerance;
+  options.tolerance = tolerance_;
   options.speed = speed;
   options.rounding = rounding_of_gaps(step);
   options.threads = omp_in_parallel() ? 1 : static_cast<std::uint32_t>(omp_get_max_threads());
@@ -189,6 +189,7 @@ bool CoupledStep::forget_forces() {
 }
 
 void CoupledStep::save(std::ostream& out) const {
+  write_value(out, tolerance_);
   for (const CoupledInterface& interface : interfaces_) {
     std::vector<int> nodes;
     for (const std::int32_t contact : interface.group().kept())
@@ -200,6 +201,7 @@ void CoupledStep::save(std::ostream& out) const {
 
 void CoupledStep::load(std::istream& in, const Dofs& u) {
   const auto d = static_cast<std::size_t>(model_.dimension());
+  read_value(in, tolerance_);
   for (CoupledInterface& part : interfaces_) {
     Interface& interface = part.interface();
     ContactList contacts;

@@ -20,11 +20,14 @@ bool share_nodes(const Model& model, const Interfaces& interfaces);
 
 class CoupledStep {
  public:
-  static constexpr double tolerance = 1e-14;
+  static constexpr double default_tolerance = 1e-10;
   static constexpr std::uint32_t most_sweeps = 1000;
 
   CoupledStep(const Model& model, Interfaces& interfaces);
 
+  // Of the residual of coupled contacts, in the scale of the step's velocities.
+  void set_tolerance(double tolerance) { tolerance_ = tolerance; }
+  double tolerance() const { return tolerance_; }
   // Takes v from v_free to the velocities that fulfil all laws. Throws ilaw::error where a law refuses.
   const ilaw_coupled_report& solve(StepView step, const double* inverse_mass, Dofs& v);
   // Why contacts of the last solve have no solution, or it is not found; empty where they are many, and
@@ -48,6 +51,7 @@ class CoupledStep {
   void solve_groups(const StepView& step, double speed, const double* inverse_mass, Dofs& v);
 
   const Model& model_;
+  double tolerance_ = default_tolerance;
   bool has_driven_nodes_ = false;
   std::vector<CoupledInterface> interfaces_;
   std::vector<const ilaw_contacts*> given_;

@@ -237,7 +237,7 @@ void Integrator::add_coupled_reactions(const StepView& step) {
   coupled_->check_driven(step, v_);
   if (solution.other_law || accounts_.is_wrong(model_, solution, v_before_))
     if (const std::string why = coupled_->explain(); !why.empty()) throw std::runtime_error(why);
-  accounts_.add_solution(solution);
+  accounts_.add_solution(solution, coupled_->tolerance());
   coupled_->accept(step, v_);
 }
 

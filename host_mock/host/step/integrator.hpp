@@ -39,6 +39,9 @@ class Integrator {
   Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt,
              std::optional<PrestressSetup> prestress = {});
 
+  // Residual to which coupled contacts are solved. A run that goes on from a checkpoint keeps the one it had.
+  void set_tolerance(double tolerance);
+
   // The half step that a run starts with, from V_0 to V_{1/2}, as interfaces let it: what rests or is bonded
   // carries its load from time 0 on. The first step does it where nobody has; later calls do nothing. Throws
   // as step().

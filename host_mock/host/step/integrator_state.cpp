@@ -148,6 +148,10 @@ void Integrator::add_load_impulse(std::size_t load, Dofs& impulse) const {
   if (steps_ > 0) loads_[load]->add_impulse({static_cast<double>(steps_ - 1) * dt_, time()}, impulse);
 }
 
+void Integrator::set_tolerance(double tolerance) {
+  if (coupled_) coupled_->set_tolerance(tolerance);
+}
+
 void Integrator::save(std::ostream& out) const {
   write_value(out, steps_);
   write_value(out, has_started_);
