@@ -15,9 +15,11 @@ namespace {
 
 // Largest part of an arm across the normal of a transverse H: arms that went through single precision pass.
 constexpr double along_tolerance = 1e-6;
-// H of an axis along which nothing moves, relative to the largest: laws resolve 2^-42 of it. An impulse r
-// that a law bounds there moves what it should not by this part of H r.
-constexpr double held_delassus = 0x1p-40;
+// H of an axis along which nothing moves, relative to the largest. A law is asked at v_free = u - H r, so a
+// solution fulfils it at the velocity u of the bodies whatever this number is. Laws round by some 2^-52 over it.
+constexpr double held_delassus = 0x1p-24;
+// H below this part of the largest is rounding: nothing moves along the axis.
+constexpr double no_delassus = 0x1p-50;
 constexpr std::uint32_t max_ends = 1U << 16;
 
 // Arms that are not numbers are left to the law to refuse, at their contact.
@@ -233,7 +235,7 @@ bool Contacts::is_held(const Block& block, std::size_t lane, std::size_t axis) c
   for (std::uint32_t c = 0; c < dimension_; ++c)
     most = std::max(most, block.column(layout_.delassus + static_cast<int>(c))[lane]);
   return axis < dimension_ &&
-         block.column(layout_.delassus + static_cast<int>(axis))[lane] <= held_delassus * most;
+         block.column(layout_.delassus + static_cast<int>(axis))[lane] == held_delassus * most;
 }
 
 void Contacts::add_outputs(std::vector<const double*>& outputs) const {
@@ -378,7 +380,8 @@ void Contacts::fill_delassus(Block& block, std::size_t lane, const Bodies& bodie
   Symmetric h = bodies.rotate() || layout_.weight_size > 1 ? coupled_delassus(block, lane, bodies)
                                                            : diagonal_delassus(block, lane, bodies);
   const double most = std::max({h[0], h[1], h[2]});
-  for (std::uint32_t c = 0; c < dimension_; ++c) h[c] = std::max(h[c], held_delassus * most);
+  for (std::uint32_t c = 0; c < dimension_; ++c)
+    if (h[c] <= no_delassus * most) h[c] = held_delassus * most;
   write_form(block, lane, layout_, h, given_.delassus_form, dimension_, block.at(layout_.normal, lane));
 }
 

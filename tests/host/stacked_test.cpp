@@ -32,6 +32,7 @@ std::vector<double> pressures_of_a_plane_wave(bool both_sides) {
   source["model"]["blocks"][1]["velocity"] = {0, 0, -1};
   source["time"] = {{"dt", 0.04}, {"end", 0.2}};
   auto [scene, integrator] = simulation_of(source);
+  integrator.set_tolerance(1e-14);
   integrator.start();
   Dofs impulse = integrator.interface_impulse();
   while (integrator.steps() < scene.steps) {

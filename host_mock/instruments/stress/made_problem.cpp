@@ -14,7 +14,7 @@ using Vector = std::array<double, 3>;
 using Wrench = std::array<double, 6>;
 
 // H of an axis along which nothing moves, relative to the largest (docs/hosts/coupled.md).
-constexpr double held_delassus = 0x1p-40;
+constexpr double held_delassus = 0x1p-24;
 
 Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -243,7 +243,7 @@ MadeProblem::Matrix MadeProblem::delassus(const Contact& contact) const {
   }
   if (form_ == ILAW_DELASSUS_FULL) {
     const double most = std::max({h[0][0], h[1][1], h[2][2]});
-    for (std::size_t c = 0; c < 3; ++c) h[c][c] = std::max(h[c][c], held_delassus * most);
+    for (std::size_t c = 0; c < 3; ++c) h[c][c] = h[c][c] > 0.0 ? h[c][c] : held_delassus * most;
   }
   return h;
 }
