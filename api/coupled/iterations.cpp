@@ -210,13 +210,15 @@ Outcome Iterations::take_turns(Blocks& blocks, Progress& progress, Best& best) {
       before = progress.square;
     }
     keep_best(blocks, progress, best);
-    if (turn == 0 && are_incompatible(blocks, progress)) return Outcome::stalled;
+    const bool grows = turn == 0 && grow_without_end(blocks, progress);
+    if (grows) keep_best(blocks, progress, best);
     if (newton(blocks, progress) == Outcome::solved) return Outcome::solved;
     keep_best(blocks, progress, best);
     // With acceleration, then without: both happen to run in circles.
     const std::size_t depth = turn % 2 == 0 ? Anderson::max_depth : 0;
     if (splitting(blocks, progress, splitting_part, depth) == Outcome::solved) return Outcome::solved;
     keep_best(blocks, progress, best);
+    if ((progress.grows = grows)) break;
     gauss_seidel_part *= 2;
     if (turn % 2 == 1) splitting_part *= 2;
     futile = best.error < 0.9 * error_before ? 0 : futile + 1;
@@ -229,7 +231,7 @@ Outcome Iterations::take_turns(Blocks& blocks, Progress& progress, Best& best) {
 // up. Where r = f(v) never rises with v, no velocity suits them all: for the growth d, sum d.v has one value
 // for all velocities of the bodies, and the one that laws ask for is larger. That holds along normals and for
 // bonds, not along a slip, whose limit rises with the normal impulse.
-bool Iterations::are_incompatible(Blocks& blocks, Progress& progress) {
+bool Iterations::grow_without_end(Blocks& blocks, Progress& progress) {
   constexpr std::uint32_t most = 50;
   constexpr double steady = 1e-22, still = 1e-11, large = 1e-3;
   scales_of(blocks);
@@ -245,7 +247,7 @@ bool Iterations::are_incompatible(Blocks& blocks, Progress& progress) {
     for (std::size_t b = 0; b < start_.size(); ++b)
       moved = std::max(moved, largest(problem_.bodies.now()[b].velocity - start_[b].velocity));
     if (!before.empty() && off <= steady * progress.square && moved <= still * progress.change)
-      return progress.is_incompatible = grows_along_normals(blocks) && grows_without_end(blocks, progress);
+      return grows_along_normals(blocks) && follow_growth(blocks, progress);
     before = step_;
   }
   return false;
@@ -266,7 +268,7 @@ bool Iterations::grows_along_normals(const Blocks& blocks) const {
 
 // Follows the last changes by doubling: bonds fail at their strengths, which ends the growth. False: that
 // happened, and iterations go on from there.
-bool Iterations::grows_without_end(Blocks& blocks, Progress& progress) {
+bool Iterations::follow_growth(Blocks& blocks, Progress& progress) {
   constexpr double other = 2.0;
   std::vector<double> growth(3 * scales_.size());
   for (std::size_t i = 0; i < growth.size(); ++i)

@@ -57,9 +57,9 @@ class Iterations {
   Outcome take_turns(Blocks& blocks, Progress& progress, Best& best);
   Outcome anderson(Blocks& blocks, Progress& progress, std::uint32_t most, Best& best);
   Outcome newton(Blocks& blocks, Progress& progress);
-  bool are_incompatible(Blocks& blocks, Progress& progress);
+  bool grow_without_end(Blocks& blocks, Progress& progress);
   bool grows_along_normals(const Blocks& blocks) const;
-  bool grows_without_end(Blocks& blocks, Progress& progress);
+  bool follow_growth(Blocks& blocks, Progress& progress);
   Outcome splitting(Blocks& blocks, Progress& progress, std::uint32_t most, std::size_t depth);
 
   // The next iteration starts from the velocities that this makes.

@@ -39,7 +39,7 @@ struct Progress {
   std::int32_t code = ILAW_OK;   // of a law that failed
   const char* reason = nullptr;  // of a code that is no law's
   bool is_cold = false;          // begins without impulses
-  bool is_incompatible = false;  // no velocity suits all laws
+  bool grows = false;            // impulses push against each other without end
 
   void note(double new_change, double new_square, double new_size) {
     ++count;
@@ -84,11 +84,11 @@ struct Progress {
   void merge(const Progress& other) {
     const std::uint32_t longest = std::max(count, other.count);
     const std::uint32_t last = other.count > count ? other.method : method;
-    const bool incompatible = is_incompatible || other.is_incompatible;
+    const bool both = grows || other.grows;
     if (other.code < 0 || (code >= 0 && other.residual() > residual())) *this = other;
     count = longest;
     method = last;
-    is_incompatible = incompatible;
+    grows = both;
   }
 };
 

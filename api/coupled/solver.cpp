@@ -383,16 +383,17 @@ void Solver::find_worst_contact(ilaw_coupled_report& report) {
 
 void Solver::explain(const Block& worst, std::size_t lane, ilaw_coupled_report& report) {
   describe_island(worst.order + lane, report);
-  if (progress_.is_incompatible) find_incompatible_laws(worst, lane, report);
+  if (progress_.grows) find_opposed_laws(worst, lane, report);
   const char *law = problem_.group(worst).law_id(), *other = report.other_law;
   std::snprintf(message_.data(), message_.size(),
                 "%s%s%s%s%s after %u iterations: contact %lld of group %lld (law '%s') is off by %s; "
-                "%lld contacts are coupled, with masses of 1:%s",
+                "%lld contacts are coupled, with masses of 1:%s%s",
                 other ? "laws '" : "contacts are not solved", other ? law : "", other ? "' and '" : "",
-                other ? other : "", other ? "' are incompatible" : "", report.sweeps,
+                other ? other : "", other ? "' push against each other without end" : "", report.sweeps,
                 static_cast<long long>(report.worst_contact), static_cast<long long>(report.worst_group), law,
                 decimal_text(progress_.change, 3).get(), static_cast<long long>(report.island_contacts),
-                decimal_text(report.mass_ratio, 2).get());
+                decimal_text(report.mass_ratio, 2).get(),
+                other ? "; remove one of them, or let it give way" : "");
   report.message = message_.data();
 }
 
@@ -419,7 +420,7 @@ void Solver::describe_island(std::size_t contact, ilaw_coupled_report& report) {
 }
 
 // The other law: of the contact at the same bodies with the largest impulse.
-void Solver::find_incompatible_laws(const Block& worst, std::size_t lane, ilaw_coupled_report& report) const {
+void Solver::find_opposed_laws(const Block& worst, std::size_t lane, ilaw_coupled_report& report) const {
   double most = 0.0;
   for (const Block& block : blocks_.list())
     for (std::size_t q = 0; q < block.count; ++q) {

@@ -40,7 +40,7 @@ class Solver {
   double energy_error() const;
   // Describes the contacts that are coupled with the worst one.
   void explain(const Block& worst, std::size_t lane, ilaw_coupled_report& report);
-  void find_incompatible_laws(const Block& worst, std::size_t lane, ilaw_coupled_report& report) const;
+  void find_opposed_laws(const Block& worst, std::size_t lane, ilaw_coupled_report& report) const;
   void describe_island(std::size_t contact, ilaw_coupled_report& report);
   std::int32_t evaluate_balance(ilaw_coupled_report& report);
   void write(ilaw_coupled_report& report);

@@ -1,6 +1,6 @@
 // Problems made from their solutions: whatever ilaw/coupled.h calls solved is audited by the laws alone, by
 // the momentum of the bodies and by work, in the scale of the velocities that it was given. Since a solution
-// exists, no laws may be called incompatible.
+// exists, no laws may be said to push against each other without end.
 //
 // ILAW_MADE_SEED and ILAW_MADE_PROBLEMS: another seed, and the number of problems of a kind.
 // SPDX-License-Identifier: BSD-3-Clause
@@ -100,7 +100,7 @@ int number(const char* name, int otherwise) {
 }
 
 struct Counts {
-  int problems = 0, wrong = 0, momentum = 0, work = 0, incompatible = 0, unsolved = 0, ill_posed = 0;
+  int problems = 0, wrong = 0, momentum = 0, work = 0, opposed = 0, unsolved = 0, ill_posed = 0;
   double worst = 0.0, sweeps = 0.0;
 };
 
@@ -133,7 +133,7 @@ TEST_P(MadeOf, IsSolvedInTheScaleOfItsInput) {
     const MadeAudit found = problem.audit(report);
     ++counts.problems;
     counts.sweeps += report.sweeps;
-    counts.incompatible += report.law != nullptr;
+    counts.opposed += report.law != nullptr;
     counts.momentum += found.momentum > 1e-9;
     counts.work += found.work > 1e-9;
     if (report.message)
@@ -148,14 +148,14 @@ TEST_P(MadeOf, IsSolvedInTheScaleOfItsInput) {
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::printf(
-      "%-16s %6d problems: wrong %d (%.1e), momentum %d, work %d, incompatible %d, unsolved %d; %.1f iterations, %.2f s\n",
+      "%-16s %6d problems: wrong %d (%.1e), momentum %d, work %d, opposed %d, unsolved %d; %.1f iterations, %.2f s\n",
       kind.name.c_str(), counts.problems, counts.wrong, counts.worst, counts.momentum, counts.work,
-      counts.incompatible, counts.unsolved, counts.sweeps / counts.problems, seconds);
+      counts.opposed, counts.unsolved, counts.sweeps / counts.problems, seconds);
   EXPECT_LE(counts.ill_posed, 0.05 * problems);
   EXPECT_EQ(counts.wrong, 0);
   EXPECT_EQ(counts.momentum, 0);
   EXPECT_EQ(counts.work, 0);
-  EXPECT_EQ(counts.incompatible, 0);
+  EXPECT_EQ(counts.opposed, 0);
   EXPECT_LE(counts.unsolved, kind.unsolved * counts.problems);
 }
 

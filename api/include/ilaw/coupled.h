@@ -156,9 +156,10 @@ typedef struct ilaw_coupled_report {
   int64_t worst_group;         /* contact with the largest residual, where that is above the tolerance;
                                   -1: none */
   int64_t worst_contact;
-  /* Ids of the law of the worst contact and of another law at its bodies (or the same law), where no velocity
-   * suits both: each iteration adds the same impulses, along normals or in bonds, and moves nothing. Null:
-   * not found. */
+  /* Ids of the law of the worst contact and of another law at its bodies (or the same law) that push against
+   * each other without end: each iteration adds the same impulses, along normals or in bonds, and moves
+   * nothing, until they make 4e7 times the velocities of the problem. Laws that contradict each other do so.
+   * Null: no such pair. */
   const char* law;
   const char* other_law;
   double speed;       /* largest velocity of a contact, before or by an impulse, in the last iteration */

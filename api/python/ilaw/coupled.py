@@ -52,8 +52,8 @@ class Report:
     out. energy (4,) [J]: sums of the columns `Energy`. bad_*: contacts with bad input, -1: none.
     stable_velocity_step [s]: as of `ilaw.Report`, with masses divided among contacts. method: of the last iteration.
     stalled: the residual is above the tolerance and falls no more. worst_*: contact with the largest residual, -1:
-    none. incompatible: ids of two laws that no velocity suits. energy_error [J]: largest difference of work and
-    energies. message: what is not solved, as a sentence; empty: nothing. All of this rank, but sweeps, residual,
+    none. opposed: ids of two laws that push against each other without end. energy_error [J]: largest difference
+    of work and energies. message: what is not solved, as a sentence; empty: nothing. All of this rank, but sweeps, residual,
     method and stalled.
     """
 
@@ -70,7 +70,7 @@ class Report:
     stalled: bool
     worst_group: int
     worst_contact: int
-    incompatible: tuple[str, str] | None
+    opposed: tuple[str, str] | None
     energy_error: float
     message: str
     speed: float

@@ -157,10 +157,10 @@ std::string CoupledStep::explain() const {
   if (!report_.other_law && !is_stuck) return "";
   const CoupledInterface& worst = interfaces_[static_cast<std::size_t>(report_.worst_group)];
   return formatted(
-      "contacts that share node %d of interface '%s' have no common solution%s; the energy is wrong by "
-      "%.3g: %s",
+      "contacts that share node %d of interface '%s' have no common solution, or it is not found; the energy is "
+      "wrong by %.3g: %s",
       worst.interface().node_of(worst.group().contact(static_cast<std::size_t>(report_.worst_contact))),
-      worst.interface().name().c_str(), report_.other_law ? "" : ", or it is not found", report_.energy_error,
+      worst.interface().name().c_str(), report_.energy_error,
       report_.message);
 }
 
