@@ -46,9 +46,9 @@ struct Block {
   std::int32_t* ends = nullptr;       // bodies: those of the first side, then those of the counterpart's
   std::int32_t* contact = nullptr;    // index in the host's arrays
   std::uint8_t* status = nullptr;
-  std::size_t order = 0;  // place of its first contact in the order of the colors
-  bool asleep = false;    // out of reach and without impulse: left out of iterations
-  double square = 0.0;    // of its contacts in the last iteration: dr.H dr
+  std::size_t order = 0;    // place of its first contact in the order of the colors
+  bool asleep = false;      // out of reach and without impulse: left out of iterations
+  double square = 0.0;      // of its contacts in the last iteration: dr.H dr
   bool is_refused = false;  // the last evaluation found bad input: those lanes have the status of it
   const char* reason = nullptr;
 

@@ -16,7 +16,8 @@ namespace {
 // Largest part of an arm across the normal of a transverse H: arms that went through single precision pass.
 constexpr double along_tolerance = 1e-6;
 // H of an axis along which nothing moves, relative to the largest. A law is asked at v_free = u - H r, so a
-// solution fulfils it at the velocity u of the bodies whatever this number is. Laws round by some 2^-52 over it.
+// solution fulfils it at the velocity u of the bodies whatever this number is. Laws round by some 2^-52 over
+// it.
 constexpr double held_delassus = 0x1p-24;
 // H below this part of the largest is rounding: nothing moves along the axis.
 constexpr double no_delassus = 0x1p-50;

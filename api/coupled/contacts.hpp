@@ -42,8 +42,8 @@ class Contacts {
   // Whether nothing moves along this axis of the host, so that H has a small number for it.
   bool may_be_held() const { return (kind_ == Kind::rigid || kind_ == Kind::weighted) && !is_transverse(); }
   bool is_held(const Block& block, std::size_t lane, std::size_t axis) const;
-  // Gaps below what this velocity, or this part of a contact's own, makes in a step become 0, so that contacts
-  // that act where they are closed do not open by rounding.
+  // Gaps below what this velocity, or this part of a contact's own, makes in a step become 0, so that
+  // contacts that act where they are closed do not open by rounding.
   void close_gaps(Block& block, double known_velocity, double part, const double* speeds) const;
   // The first number of each output.
   void add_outputs(std::vector<const double*>& outputs) const;

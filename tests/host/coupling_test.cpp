@@ -4,9 +4,9 @@
 namespace ilaw::host::testing {
 namespace {
 
-// The iterations end at a solution of each law: Signorini and Coulomb, to the tolerance and rounding of the top speed. Contact
-// arrives at gap 0, but turns a node that was leaving no faster than it left; friction is Coulomb's unless it
-// would push a node whose slip turned round, which it may do less than that.
+// The iterations end at a solution of each law: Signorini and Coulomb, to the tolerance and rounding of the
+// top speed. Contact arrives at gap 0, but turns a node that was leaving no faster than it left; friction is
+// Coulomb's unless it would push a node whose slip turned round, which it may do less than that.
 void expect_law(const Interface& interface, int contact_index, const Dofs& v, const Dofs& before,
                 double h_step, double friction, double speed, double residual) {
   const Vector relative = interface.relative(contact_index, v) - interface.obstacle().velocity();

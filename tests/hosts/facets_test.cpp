@@ -83,9 +83,10 @@ class Searched {
     positions.position = ilaw::input(now.front().data(), 3, 1);
     ASSERT_EQ(ilaw_facets_update(search.get(), &positions), ILAW_OK);
   }
-  ilaw_facets_nearby near(double reach) {
+  ilaw_facets_nearby near(double reach, bool anew = false) {
     ilaw_facets_nearby nearby{};
     nearby.struct_size = sizeof nearby;
+    nearby.forced = anew ? 1 : 0;
     nearby.reach = reach;
     EXPECT_EQ(ilaw_facets_near(search.get(), &nearby), ILAW_OK);
     return nearby;
@@ -338,6 +339,7 @@ TEST(Facets, NearListsLeaveNobodyOut) {
       const Pairs found = all.all();
       for (std::size_t k = 0; k < is_near.size(); ++k) {
         EXPECT_TRUE(is_near[k] || found.gap[k] > reach) << found.gap[k];
+        EXPECT_TRUE(is_near[k] || nearby.is_new == 0 || found.gap[k] > nearby.horizon) << found.gap[k];
         left_out += is_near[k] ? 0 : 1;
       }
     }
@@ -361,9 +363,14 @@ TEST(Facets, ACommonMotionCostsNothing) {
     EXPECT_EQ(nearby.count, 0);
     EXPECT_GT(nearby.slack, 0.002);  // less than the distance: the plate below could turn its back
   }
+  EXPECT_EQ(all.counts().updates, 101);
   EXPECT_EQ(all.counts().refreshes, 1);
   EXPECT_EQ(all.counts().refits, 0);
   EXPECT_EQ(all.counts().facets, 0);
+  EXPECT_NEAR(all.counts().motion, 0.0, 1e-9);
+  EXPECT_GT(all.counts().shortest_edge, 0.0);
+  EXPECT_EQ(all.near(0.01, true).is_new, 1U) << "asked for anew";
+  EXPECT_EQ(all.counts().refreshes, 2);
 }
 
 // ---- what it costs --------------------------------------------------------------------------------------

@@ -31,9 +31,8 @@ void for_each_member(Any& tally, Work work) {
   for (auto* count : {&tally.active, &tally.skipped, &tally.sweeps, &tally.unconverged, &tally.left_surface})
     work(*count);
   work(tally.sweeps_max);
-  for (auto* value :
-       {&tally.coupling_residual_max, &tally.coupling_tolerance, &tally.coupling_energy,
-        &tally.penetration_max, &tally.stable_step})
+  for (auto* value : {&tally.coupling_residual_max, &tally.coupling_tolerance, &tally.coupling_energy,
+                      &tally.penetration_max, &tally.stable_step})
     work(*value);
   for (auto& count : tally.status_counts) work(count);
 }

@@ -160,8 +160,7 @@ std::string CoupledStep::explain() const {
       "contacts that share node %d of interface '%s' have no common solution, or it is not found; the energy is "
       "wrong by %.3g: %s",
       worst.interface().node_of(worst.group().contact(static_cast<std::size_t>(report_.worst_contact))),
-      worst.interface().name().c_str(), report_.energy_error,
-      report_.message);
+      worst.interface().name().c_str(), report_.energy_error, report_.message);
 }
 
 void CoupledStep::check_driven(const StepView& step, const Dofs& v) const {

@@ -90,6 +90,7 @@ class MadeProblem {
   Wrench smooth(const Contact& contact) const;
   // Impulse of the law alone at this free velocity.
   Wrench answer(const Contact& contact, const Wrench& v_free) const;
+  double least_error(const Contact& contact, const Matrix& h, const Wrench& v_free, const Wrench& r) const;
   bool is_well_posed(const Contact& contact, const Wrench& v) const;
   MadeAudit audit(Wrench Contact::*impulse, Wrench Body::*velocity) const;
 

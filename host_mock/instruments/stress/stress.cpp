@@ -55,7 +55,7 @@ std::filesystem::path keep(const json& scene, const StressVerdict& verdict, cons
 StressReport stress(const StressSetup& setup, const std::function<void(std::int64_t)>& progress) {
   const LawBook laws(setup.laws);
   StressReport report;
-  for (const LawBook::Entry& entry : laws.all()) report.rows.push_back({entry.law->id, 0, 0, 0, 0, {}});
+  for (const LawBook::Entry& entry : laws.all()) report.rows.push_back({.law = entry.law->id, .worst = {}});
   for (std::int64_t i = 0; i < setup.scenes && !laws.all().empty(); ++i) {
     const std::uint64_t seed = setup.seed + static_cast<std::uint64_t>(i);
     const std::size_t which = static_cast<std::size_t>(seed % laws.all().size());
@@ -71,6 +71,10 @@ StressReport stress(const StressSetup& setup, const std::function<void(std::int6
       if (!setup.keep.empty() && report.failures.size() < most_kept)
         failure.file = keep(scene, verdict, name, setup.keep);
       report.failures.push_back(std::move(failure));
+    }
+    if (const auto fault = stress_coupled(laws.all()[which], seed, report.rows[which])) {
+      ++report.rows[which].failed;
+      report.failures.push_back({seed, report.rows[which].law, *fault, {}});
     }
     progress(i + 1);
   }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,8 @@ struct StressSetup {
 struct StressRow {
   std::string law;
   std::int64_t scenes = 0, refused = 0, stopped = 0, failed = 0;
-  StressFigures worst;  // sums of steps, largest of the others
+  std::int64_t made = 0, unsolved = 0;  // coupled contacts made from their solution
+  StressFigures worst;                  // sums of steps, largest of the others
 };
 
 // A scene that did not come to its end, or not as it must.
@@ -41,8 +43,14 @@ struct StressReport {
   std::vector<StressFinding> failures, stops;
 };
 
-// The laws take turns. progress is told the number of scenes done. Throws ilaw::error where a library
-// cannot be opened, std::runtime_error where a scene cannot be written.
+// The laws take turns: each has a random scene, and coupled contacts made from their solution. progress is
+// told the number of scenes done. Throws ilaw::error where a library cannot be opened, std::runtime_error
+// where a scene cannot be written.
 StressReport stress(const StressSetup& setup, const std::function<void(std::int64_t)>& progress);
+
+// Solves the coupled contacts of a seed, made from their solution, and holds what is called solved to the
+// law, to momentum and to its work. Returns what is wrong, or nothing. A law that cannot have such contacts
+// has none.
+std::optional<std::string> stress_coupled(const LawBook::Entry& law, std::uint64_t seed, StressRow& row);
 
 }  // namespace ilaw::host
