@@ -13,9 +13,11 @@ Progress Iterations::run(Blocks& blocks, Progress progress, bool& stalled) {
     progress.scale = std::max(scale, progress.limits.speed);
     const std::uint32_t most = progress.limits.most;
     const Outcome outcome = conjugate(blocks, progress, most <= few ? most : first_conjugate);
+    if (outcome == Outcome::spent && most >= least_few && most <= few && !ranks_.any())
+      solve_islands(blocks, progress, stalled, small_island);
     if (outcome != Outcome::stalled) break;
     // A contact that came within reach meanwhile: all of it again, from here.
-    if (solve_islands(blocks, progress, stalled) != Outcome::solved) return progress;
+    if (solve_islands(blocks, progress, stalled, blocks.count()) != Outcome::solved) return progress;
     if (!ranks_.any_rank(sweep_.wake(blocks))) return progress;
   }
   stalled = stalled || progress.has_stalled();
@@ -302,6 +304,7 @@ Outcome Iterations::newton(Blocks& blocks, Progress& progress) {
   constexpr std::uint32_t most_steps = 60, most_failures = 5, most_off = 10;
   const double start = progress.square;
   constexpr double much = 0.25;
+  scales_of(blocks);
   double least = Progress::infinity;  // the first step may be far off
   for (std::uint32_t k = 0, failures = 0; k < most_steps && failures < most_failures && !progress.is_over();
        ++k) {
@@ -376,10 +379,25 @@ void Iterations::read_impulses(const Blocks& blocks, std::vector<double>& impuls
   }
 }
 
-// An island that is solved in its own scale is left alone.
-Outcome Iterations::solve_islands(Blocks& blocks, Progress& progress, bool& stalled) {
+// Newton steps alone, beyond the iterations that the caller asks for.
+Outcome Iterations::solve_directly(Blocks& blocks, Progress& progress) {
+  Best best;
+  keep_best(blocks, progress, best);
+  const std::uint32_t count = progress.count, most = progress.limits.most;
+  progress.limits.most = count + most_direct;
+  const Outcome outcome = newton(blocks, progress);
+  if (outcome != Outcome::solved && best.error < progress.error()) return_to(blocks, progress, best.impulses);
+  progress.count = count;
+  progress.limits.most = most;
+  return outcome;
+}
+
+// An island that is solved in its own scale is left alone, and so is one of more contacts than `largest`.
+Outcome Iterations::solve_islands(Blocks& blocks, Progress& progress, bool& stalled, std::size_t largest) {
+  const bool is_direct = progress.limits.most <= few;
   if (!ranks_.any()) islands_.find(blocks, problem_);
-  if (ranks_.any() || islands_.count() <= 1) {
+  if (islands_.count() == 0 && !ranks_.any()) return Outcome::stalled;
+  if (ranks_.any() || (islands_.count() <= 1 && !is_direct)) {
     const Outcome outcome = solve_island(blocks, progress);
     stalled = stalled || progress.has_stalled();
     return outcome;
@@ -389,9 +407,11 @@ Outcome Iterations::solve_islands(Blocks& blocks, Progress& progress, bool& stal
   bool is_solved = true;
   for (std::int32_t island = 0; island < islands_.count(); ++island) {
     Progress& own = islands[static_cast<std::size_t>(island)];
-    if (own.residual() > own.limits.tolerance) {
+    const double solved = is_direct ? std::max(own.limits.tolerance, far_off) : own.limits.tolerance;
+    if (own.residual() > solved && islands_.lanes(island).size() <= largest) {
       island_.select(blocks, islands_.lanes(island));
-      is_solved = solve_island(island_, own) == Outcome::solved && is_solved;
+      const Outcome outcome = is_direct ? solve_directly(island_, own) : solve_island(island_, own);
+      is_solved = outcome == Outcome::solved && is_solved;
       island_.give_back(blocks);
       stalled = stalled || own.has_stalled();
     }

@@ -36,6 +36,12 @@ class Iterations {
   static constexpr double max_newton_growth = 0x1p14;
   // Iterations of the conjugate method before others; with at most `few` iterations in all there is no other.
   static constexpr std::uint32_t few = 100, first_conjugate = 30;
+  // With few iterations, but not fewer than this, islands of up to so many contacts whose residual is above
+  // this take up to so many Newton steps. Closer ones keep what they have: among the solutions of redundant
+  // contacts iterations find one near that of the step before.
+  static constexpr std::uint32_t least_few = 10, most_direct = 20;
+  static constexpr std::size_t small_island = 32;
+  static constexpr double far_off = 1e-3;
   // Iterations between looks for sleeping contacts that come within reach.
   static constexpr std::uint32_t wake_interval = 4;
   // Factor of the change with which impulses are better than the best, and are copied.
@@ -52,7 +58,8 @@ class Iterations {
   // One plain iteration, the same on all ranks.
   void iterate(Blocks& blocks, Progress& progress, const Sweep::Conjugate& conjugate = {});
   Outcome conjugate(Blocks& blocks, Progress& progress, std::uint32_t most);
-  Outcome solve_islands(Blocks& blocks, Progress& progress, bool& stalled);
+  Outcome solve_islands(Blocks& blocks, Progress& progress, bool& stalled, std::size_t largest);
+  Outcome solve_directly(Blocks& blocks, Progress& progress);
   Outcome solve_island(Blocks& blocks, Progress& progress);
   Outcome take_turns(Blocks& blocks, Progress& progress, Best& best);
   Outcome anderson(Blocks& blocks, Progress& progress, std::uint32_t most, Best& best);

@@ -266,6 +266,50 @@ TEST(CoupledConvergence, HoldsAWallUnderAHeavyCourse) {
   EXPECT_LE(report.residual, 1e-9) << report.sweeps;
 }
 
+// A heavy box on a light one, four corners each: gravity in each step, from the forces of the last one.
+struct Boxes {
+  explicit Boxes(double ratio) : boxes(friction(true, 0.5), true) {
+    for (const double m : {1.0, ratio}) boxes.add_body(m, m / 6.0, {0.0, 0.0, -g * h});
+    for (const double x : {-0.5, 0.5})
+      for (const double y : {-0.5, 0.5}) {
+        boxes.add(0, -1, {x, y, -0.5});
+        boxes.add(1, 0, {x, y, -0.5}, {x, y, 0.5});
+      }
+  }
+  // Largest velocity that is left, over that of a step of gravity; sets whether the solver is content.
+  double step(std::uint32_t most, bool& solved) {
+    for (std::size_t i = 2; i < boxes.v.size(); i += 3)
+      boxes.v[i] = (boxes.velocity.empty() ? 0.0 : boxes.velocity[i]) - g * h;
+    solved = boxes.solve(1e-10, most).message == nullptr;
+    return boxes.largest_velocity() / (g * h);
+  }
+  static constexpr double g = 10.0, h = 1e-3;
+  Assembly boxes;
+};
+
+TEST(CoupledConvergence, HoldsAHeavyBoxOnALightOne) {
+  const std::vector<std::pair<double, std::uint32_t>> cases{{1.0, 20},   {1e2, 20},   {1.0, 1000},
+                                                            {1e2, 1000}, {1e4, 1000}, {1e6, 1000}};
+  for (const auto& [ratio, most] : cases) {
+    Boxes boxes(ratio);
+    double fallen = 0.0;
+    for (int n = 0; n < 120; ++n) {
+      bool solved = false;
+      EXPECT_LE(boxes.step(most, solved), most < 1000 ? 1e-3 : 1e-7)
+          << ratio << ", " << most << ", step " << n;
+      EXPECT_TRUE(solved || most < 1000) << ratio << ", " << most << ", step " << n;
+      fallen -= Boxes::h * boxes.boxes.velocity[5];
+    }
+    EXPECT_NEAR(fallen, 0.0, most < 1000 ? 1e-8 : 1e-12)
+        << "of an edge of 1, ratio " << ratio << ", most " << most;
+    double weight = 0.0;
+    for (std::size_t k = 0; k < 8; k += 2) weight += boxes.boxes.impulse[3 * k + 2];  // at the floor
+    EXPECT_NEAR(weight, (1.0 + ratio) * Boxes::g * Boxes::h,
+                (most < 1000 ? 1e-4 : 1e-9) * (1.0 + ratio) * Boxes::g * Boxes::h)
+        << "ratio " << ratio;
+  }
+}
+
 // Two meshes of 5 x 5 and 4 x 4 cells, the nodes of each on facets of the other: more contacts than needed.
 TEST(CoupledConvergence, SolvesBothSidesOfTwoMeshes) {
   Assembly meshes(friction(false, 0.3), false);

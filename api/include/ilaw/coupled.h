@@ -111,7 +111,8 @@ typedef struct ilaw_exchange {
 /* All zero asks for what the comments say. */
 typedef struct ilaw_coupled_options {
   uint32_t struct_size;
-  uint32_t most_sweeps;          /* largest number of iterations; 0: 1000 */
+  uint32_t most_sweeps;          /* largest number of iterations; 0: 1000. From 10 to 100: up to 20 Newton
+                                    steps more for coupled sets of at most 32 contacts that are off by 1e-3 */
   double tolerance;              /* of the residual; 0: 1e-10 */
   const ilaw_exchange* exchange; /* null: one process */
   double speed;                  /* the residual is relative to no smaller velocity; 0: only to that at which
