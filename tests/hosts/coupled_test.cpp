@@ -322,7 +322,8 @@ TEST(Coupled, NamesContactsWithBadInputAndSolvesTheOthers) {
   EXPECT_EQ(scene.impulse[15], 0.0);
 }
 
-// tests/hosts/grains.c, a host in C: a thousand grains fall into a box. docs/comparisons.md has larger ones.
+// host_mock/minimal/grains.c, a host in C: a thousand grains fall into a box. docs/comparisons.md has larger
+// ones.
 TEST(Coupled, PileSettlesWithoutSinkingIntoItself) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
   const auto [code, output] =

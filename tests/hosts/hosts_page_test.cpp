@@ -40,18 +40,19 @@ std::vector<code_block> code_blocks(const std::string& page) {
   return blocks;
 }
 
-// All pages of docs/hosts, one after the other.
+// All pages of docs/hosts, and that of the minimal host, one after the other.
 std::string pages_of_hosts() {
-  std::string text;
+  std::string text = read(ILAW_MINIMAL "/README.md");
   for (const auto& page : std::filesystem::directory_iterator(ILAW_DOCS "/hosts")) text += read(page.path());
   return text;
 }
 
 TEST(HostsPage, QuotesCodeThatIsBuiltAndRun) {
   const std::map<std::string, std::string> sources{
-      {"c", read(ILAW_EXAMPLES "/blocks.c") + read(ILAW_EXAMPLES "/grains.c") +
+      {"c", read(ILAW_MINIMAL "/blocks.c") + read(ILAW_MINIMAL "/grains.c") +
                 read(ILAW_EXAMPLES "/../device/points.c")},
-      {"cpp", read(ILAW_EXAMPLES "/blocks.cpp") + read(ILAW_EXAMPLES "/adaptor_test.cpp")},
+      {"cpp", read(ILAW_EXAMPLES "/blocks.cpp") + read(ILAW_EXAMPLES "/adaptor_test.cpp") +
+                  read(ILAW_MINIMAL "/minimal.cpp")},
       {"fortran", read(ILAW_EXAMPLES "/blocks.f90")},
       {"python", read(ILAW_EXAMPLES "/python/blocks.py")}};
   std::set<std::string> languages;

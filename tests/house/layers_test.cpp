@@ -33,6 +33,8 @@ std::string complaint_of_host(const std::string& inside, const std::string& head
   if (header.starts_with("ilaw/kit"))
     return "the kit is for authors of laws, hosts need ilaw.h and the loader";
   if (!quoted) return "";
+  if (inside.starts_with("minimal/"))
+    return header == "minimal.hpp" ? "" : "the minimal host has nothing of the reference host";
   const std::string from = fs::path(inside).parent_path().filename(), to = first_folder(header);
   if (to == "check") return from == "cli" ? "" : "only a command knows the checker";
   if (floor_of(to) == floors.end()) return "no such floor";

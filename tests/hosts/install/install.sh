@@ -72,8 +72,7 @@ fi
 [ "$way" = install ] || exit 0
 
 echo "== a project with CMake: hosts with the static and the shared loader"
-cp "$source/tests/hosts/blocks.c" "$source/tests/hosts/blocks.cpp" \
-   "$source/tests/hosts/grains.c" .
+cp "$prefix/share/ilaw/minimal/blocks.c" "$prefix/share/ilaw/minimal/grains.c" .
 cat >CMakeLists.txt <<'EOF'
 cmake_minimum_required(VERSION 3.22)
 project(outside LANGUAGES C CXX)
@@ -96,6 +95,14 @@ out/blocks_shared coulomb | cmp - wanted
 out/grains_static coulomb 20 20 10 >wanted_grains
 grep -q "^overlap .* contacts [1-9]" wanted_grains
 out/grains_shared coulomb 20 20 10 | cmp - wanted_grains
+
+echo "== the minimal host, a project of its own"
+minimal=$prefix/share/ilaw/minimal
+{ cmake -S "$minimal" -B minimal -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$cc" \
+    -DCMAKE_CXX_COMPILER="$cxx" && cmake --build minimal; } >build.log 2>&1 || { cat build.log; exit 1; }
+minimal/ilaw-minimal "$prefix/share/ilaw/scenes/sliding_block.json" own
+"$prefix/bin/ilaw" run "$prefix/share/ilaw/scenes/sliding_block.json" --out reference
+cmp own/history.csv reference/history.csv
 
 echo "== by hand, with pkg-config"
 export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
