@@ -44,6 +44,7 @@ CLASSES = [
     ("ILAW_FLAG_INTERNAL", "VariableFlag", "Flags", "ILAW_FLAG_", "Flags of a state variable."),
     ("ILAW_FREE", "Status", "IntEnum", "ILAW_", "State of a node after a step."),
     ("ILAW_METHOD_GAUSS_SEIDEL", "Method", "IntEnum", "ILAW_METHOD_", "Method of the last iteration of a solve."),
+    ("ILAW_PLACE_OVER", "Place", "IntEnum", "ILAW_PLACE_", "Where a point is beside the closest facet."),
     ("ILAW_ENERGY_FRICTION", "Energy", "IntEnum", "ILAW_ENERGY_", "Column of the energy output."),
 ]
 # Values of members in a Fortran variable that is merely declared; all others are 0 or null.
@@ -184,7 +185,7 @@ def parsed(include: Path) -> c_ast.FileAST:
         Path(folder, "stdint.h").write_text("\n".join(types) + "\n")
         Path(folder, "stddef.h").write_text("typedef unsigned long size_t;\n")
         source = Path(folder, "all.c")
-        source.write_text("#include <ilaw/coupled.h>\n#include <ilaw/loader.h>\n")
+        source.write_text("#include <ilaw/coupled.h>\n#include <ilaw/loader.h>\n#include <ilaw/search.h>\n")
         command = [os.environ.get("CC", "cc"), "-E", "-nostdinc", f"-I{folder}", f"-I{include}", f"-I{API / 'include'}"]
         text = subprocess.run([*command, source], check=True, capture_output=True, text=True).stdout
     return c_parser.CParser().parse(text, "headers")
@@ -437,6 +438,9 @@ def bindings(include: Path) -> dict[str, str]:
         ),
         "python/ilaw/_coupled_abi.py": python.module(
             "Structs and functions of coupled contacts", ["coupled.h"], "from enum import IntEnum\n\nfrom . import _abi\n"
+        ),
+        "python/ilaw/_search_abi.py": python.module(
+            "Structs and functions of the search for facets", ["search.h"], "from enum import IntEnum\n\nfrom . import _abi\n"
         ),
     }
 

@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# Runs the cases in an OpenRadioss and compares them with closed forms: slide, impact, two bars, peel.
+#   OPENRADIOSS=/path/of/OpenRadioss api/openradioss/examples/run.sh [FOLDER]
+# OPENRADIOSS has exec/starter_* and exec/engine_*. ilaw must be installed for the Python that RAD_PYTHON_PATH names;
+# PYTHONPATH, ILAW_LOADER and ILAW_PATH are passed on. SPDX-License-Identifier: BSD-3-Clause
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+: "${OPENRADIOSS:?found no OPENRADIOSS, expected the folder of an OpenRadioss}"
+programs=("$OPENRADIOSS"/exec/starter_* "$OPENRADIOSS"/exec/engine_*)
+[ -x "${programs[0]}" ] || { echo "${programs[0]}: no program, expected OPENRADIOSS/exec/starter_*" >&2; exit 2; }
+starter=${STARTER:-$(ls "$OPENRADIOSS"/exec/starter_* | head -1)} engine=${ENGINE:-$(ls "$OPENRADIOSS"/exec/engine_* | head -1)}
+folder=${1:-$(mktemp -d)}
+export RAD_CFG_PATH=${RAD_CFG_PATH:-$OPENRADIOSS/hm_cfg_files}
+export RAD_PYTHON_PATH=${RAD_PYTHON_PATH:-$(python3 -c 'import sysconfig as s; print(s.get_config_var("LIBDIR") + "/" + s.get_config_var("INSTSONAME"))')}
+export PYTHONPATH=$here/..:${PYTHONPATH:-}
+failed=0
+for case in slide impact two_bars peel; do
+  python3 "$here/cases.py" write "$case" "$folder/$case"
+  (
+    cd "$folder/$case"
+    deck=$(basename ./*_0000.rad _0000.rad)
+    "$starter" -i "${deck}_0000.rad" -nt 1 -python >starter.log 2>&1 && "$engine" -i "${deck}_0001.rad" -nt 1 >engine.log 2>&1
+  ) || { echo "$case: the run failed, see $folder/$case"; failed=1; continue; }
+  python3 "$here/cases.py" judge "$case" "$folder/$case" || failed=1
+done
+exit $failed
