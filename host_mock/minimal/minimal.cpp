@@ -41,7 +41,7 @@ class Host {
 
  private:
   void sum_impulses(const Step& step);
-  void kick();
+  void kick(double factor);
   void locate(Contacts& contacts, double time) const;
   void add_reactions(const Step& step);
   void evaluate(Contacts& contacts, const Step& step);
@@ -62,7 +62,7 @@ void Host::step() {
   for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += h * v_[i];  // u_n+1 = u_n + h V_n+1/2
   sum_impulses(step);                                              // h f_n+1, without contact
   v_before_ = v_;
-  kick();               // V_free = V_n+1/2 + M^-1 h f_n+1
+  kick(1.0);            // V_free = V_n+1/2 + M^-1 h f_n+1
   add_reactions(step);  // r = law(v_free, H, gap, state), V_n+3/2 = V_free + M^-1 r
   ++steps_;
 }
@@ -75,8 +75,8 @@ void Host::start() {
     ilaw_report report = empty_report();
     check(contacts, contacts.law.initialise(batch_of(contacts, d_, step), &report), report);
   }
-  sum_impulses(step);
-  kick();
+  sum_impulses({0.0, 1.0, scene_.dt});  // over a unit of time: forces
+  kick(step.velocity_step);
   add_reactions(step);
 }
 
@@ -98,9 +98,9 @@ void Host::sum_impulses(const Step& step) {
   for (std::size_t i = 0; i < u_.size(); ++i) impulse_[i] += -scene_.points.stiffness[i] * u_[i] * h;
 }
 
-void Host::kick() {
+void Host::kick(double factor) {
   for (std::size_t i = 0; i < v_.size(); ++i) {
-    v_[i] += impulse_[i] * (1.0 / scene_.points.mass[i / d_]);
+    v_[i] += factor * (impulse_[i] * (1.0 / scene_.points.mass[i / d_]));
     if (!std::isfinite(v_[i]))
       throw std::runtime_error("step " + std::to_string(steps_ + 1) + ": the velocity of node " +
                                std::to_string(i / d_) + " is not finite, expected a smaller /time/dt");
@@ -121,7 +121,8 @@ void Host::locate(Contacts& contacts, double time) const {
       apart[c] = contacts.partners.empty() ? x - time * obstacle.velocity[c] - obstacle.center[c]
                                            : x - position(contacts.partners[k], c);
       square += apart[c] * apart[c];
-      along += apart[c] * obstacle.normal[c];
+      const double part = apart[c] * obstacle.normal[c];
+      along = c == 0 ? part : along + part;
     }
     const double distance = std::sqrt(square);
     const bool is_sphere = obstacle.radius > 0.0;

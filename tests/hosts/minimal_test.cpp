@@ -3,17 +3,23 @@
 #include "support/program.hpp"
 #include "support/scene_files.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <random>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
 
 using namespace ilaw::testing::matchers;
 using namespace ilaw::testing::programs;
+using nlohmann::json;
 namespace fs = std::filesystem;
 
 fs::path folder_of(const std::string& name) {
@@ -92,6 +98,96 @@ TEST(MinimalHost, GivesTheSameBitsOnMovingSpheres) {
   const Outcome outcome = run_minimal(folder / "scene.json", folder / "minimal");
   ASSERT_EQ(outcome.code, 0) << outcome.output;
   EXPECT_EQ(text_of(folder / "minimal/history.csv"), history_of_ilaw(folder / "scene.json", folder / "ilaw"));
+}
+
+// Random scenes that both can read.
+class RandomScene {
+ public:
+  explicit RandomScene(std::uint32_t seed) : random_(seed), d_(1 + below(3)) {}
+
+  json make() {
+    json points = json::array(), loads = json::array(), interfaces = json::array();
+    const std::size_t n = 1 + below(8), cut = below(n + 1), law = below(std::size(laws_) - (d_ == 1 ? 2 : 0));
+    for (std::size_t k = 0; k < n; ++k) points.push_back(point());
+    if (below(3) > 0) loads.push_back({{"type", "gravity"}, {"acceleration", vector(1.0)}});
+    loads.push_back({{"type", "force"},
+                     {"nodes", {below(n)}},
+                     {"direction", vector(1.0)},
+                     {"history", {{0.0, 0.0}, {0.1, uniform(-9.0, 9.0)}, {0.3, 0.0}}}});
+    for (std::size_t k = below(3); k > 0; --k)
+      loads.push_back({{"type", "shock"},
+                       {"nodes", {below(n)}},
+                       {"time", 0.05 * static_cast<double>(k)},
+                       {"impulse", vector(1.0)}});
+    for (const auto& [first, end] : {std::pair{std::size_t{0}, cut}, {cut, n}}) {
+      json nodes = json::array();
+      for (std::size_t k = first; k < end; ++k) nodes.push_back(k);
+      if (!nodes.empty())
+        interfaces.push_back({{"law", laws_[law].first},
+                              {"parameters", json::parse(laws_[law].second)},
+                              {"nodes", nodes},
+                              {"obstacle", obstacle()}});
+    }
+    json watch = json::array();
+    for (std::size_t k = 0; k < n; ++k) watch.push_back(k);
+    return {{"model", {{"type", "points"}, {"dimension", d_}, {"points", points}}},
+            {"time", {{"dt", below(2) ? 1e-3 : 7.3e-4}, {"end", 0.25}}},
+            {"loads", loads},
+            {"interfaces", interfaces},
+            {"output", {{"watch", watch}, {"every", 1 + below(5)}}}};
+  }
+
+ private:
+  std::size_t below(std::size_t end) { return random_() % end; }
+  double uniform(double low, double high) { return low + (high - low) * (random_() / 4294967296.0); }
+  json vector(double size) {
+    json made = json::array();
+    for (std::size_t c = 0; c < d_; ++c) made.push_back(uniform(-size, size));
+    return made;
+  }
+  json point() {
+    json made = {{"mass", std::exp(uniform(-4.0, 4.0))},
+                 {"area", uniform(0.1, 1.0)},
+                 {"position", vector(0.3)},
+                 {"velocity", vector(2.0)}};
+    if (below(3) == 0)
+      for (std::size_t c = 0; c < d_; ++c)
+        made["stiffness"].push_back(made["mass"].get<double>() * uniform(0.0, 500.0));
+    return made;
+  }
+  json obstacle() {
+    json made = {{"type", "plane"}, {"point", vector(0.3)}, {"normal", vector(1.0)}};
+    if (below(2)) made = {{"type", "sphere"}, {"center", vector(0.5)}, {"radius", uniform(0.05, 0.5)}};
+    if (below(2)) made["velocity"] = vector(1.0);
+    return made;
+  }
+
+  static constexpr std::pair<const char*, const char*> laws_[] = {  // the last two have no form in 1D
+      {"contact", R"({"restitution": 0.4})"},
+      {"contact", R"({"restitution": 0.7, "activation": "resolved"})"},
+      {"coulomb", R"({"friction": 0.4, "restitution": 0.3})"},
+      {"cohesive", R"({"strength": 30.0, "toughness": 0.7, "friction": 0.2})"},
+      {"postit", R"({"efficiency_decrease": 3.0, "adhesion_limit": "inf", "memory": 0.05})"},
+      {"tie", R"({"strength": 0.5, "memory": 0.1})"},
+      {"penalty", R"({"stiffness": 1e4, "integration": "implicit", "damping": 10.0})"},
+      {"slip_weakening", R"({"friction": 0.6, "dynamic_friction": 0.2, "critical_slip": 0.1})"},
+      {"rccm", R"({"normal_stiffness": 1e3, "tangential_stiffness": 500.0, "adhesion_energy": 0.5,
+                   "viscosity": 0.05, "friction": 0.4})"}};
+  std::mt19937 random_;
+  std::size_t d_;
+};
+
+TEST(MinimalHost, GivesTheSameBitsOnRandomScenes) {
+  const fs::path folder = folder_of("random");
+  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+    std::ofstream(folder / "scene.json") << RandomScene(seed).make();
+    const Outcome outcome = run_minimal(folder / "scene.json", folder / "minimal");
+    ASSERT_EQ(outcome.code, 0) << outcome.output << RandomScene(seed).make();
+    ASSERT_EQ(text_of(folder / "minimal/history.csv"),
+              history_of_ilaw(folder / "scene.json", folder / "ilaw"))
+        << RandomScene(seed).make();
+    fs::remove_all(folder / "ilaw");
+  }
 }
 
 std::vector<double> numbers_of(const std::string& table) {
