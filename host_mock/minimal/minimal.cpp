@@ -35,6 +35,7 @@ class Host {
   }
   void start();
   void step();
+  const Scene& scene() const { return scene_; }
   std::int64_t steps() const { return steps_; }
   double time() const { return static_cast<double>(steps_) * scene_.dt; }
   Columns columns() const;
@@ -163,7 +164,7 @@ void Host::evaluate(Contacts& contacts, const Step& step) {
 void Host::check(const Contacts& contacts, ilaw_result code, const ilaw_report& report) const {
   if (code == ILAW_OK) return;
   std::string text = "step " + std::to_string(steps_ + 1) + ": interface '" + contacts.name + "': ";
-  if (code == ILAW_BAD_NODES)
+  if (code == ILAW_BAD_NODES && report.first_bad_node >= 0)
     text += "node " + std::to_string(contacts.nodes[static_cast<std::size_t>(report.first_bad_node)]) + ": ";
   throw std::runtime_error(text + (report.reason ? report.reason : "code " + std::to_string(code)));
 }
@@ -223,10 +224,8 @@ void write_row(const Columns& columns, std::ostream& out) {
 }
 
 void run(const std::string& file, const std::filesystem::path& folder) {
-  Scene scene = read_scene(file);
-  const std::string title = scene.title;
-  const std::int64_t steps = scene.steps, every = scene.every;
-  Host host(std::move(scene));
+  Host host(read_scene(file));
+  const std::int64_t steps = host.scene().steps, every = host.scene().every;
   std::filesystem::create_directories(folder);
   std::ofstream history(folder / "history.csv");
   host.start();
@@ -237,8 +236,8 @@ void run(const std::string& file, const std::filesystem::path& folder) {
     if (host.steps() % every == 0 || host.steps() == steps) write_row(host.columns(), history);
   }
   if (!history.flush()) throw std::runtime_error((folder / "history.csv").string() + " could not be written");
-  std::printf("%s: %lld steps to time %g; %s\n", title.c_str(), static_cast<long long>(steps), host.time(),
-              (folder / "history.csv").c_str());
+  std::printf("%s: %lld steps to time %g; %s\n", host.scene().title.c_str(), static_cast<long long>(steps),
+              host.time(), (folder / "history.csv").c_str());
 }
 
 }  // namespace

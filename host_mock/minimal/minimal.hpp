@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace minimal {
@@ -43,6 +44,9 @@ struct Obstacle {
 
 // The nodes that have one instance of a law, and all that the law reads and writes there.
 struct Contacts {
+  Contacts(std::string name_of, ilaw::interface law_of, Nodes nodes_of)
+      : name(std::move(name_of)), law(std::move(law_of)), info(law.info()), nodes(std::move(nodes_of)) {}
+
   std::string name;
   ilaw::interface law;
   ilaw_instance_info info;

@@ -188,24 +188,9 @@ Contacts read_interface(const json& interface, const std::string& place, const j
                         const Points& points) {
   only(interface, place, {"name", "law", "library", "parameters", "nodes", "obstacle", "against"});
   const std::size_t d = points.d;
-  Contacts contacts{interface.value("name", "interface" + place.substr(place.rfind('/') + 1)),
+  Contacts contacts(interface.value("name", "interface" + place.substr(place.rfind('/') + 1)),
                     create_law(interface, place, fields, d),
-                    {},
-                    read_nodes(interface.at("nodes"), place + "/nodes", points),
-                    {},
-                    {},
-                    {},
-                    {},
-                    {},
-                    {},
-                    {},
-                    {},
-                    {},
-                    {},
-                    {},
-                    {},
-                    {}};
-  contacts.info = contacts.law.info();
+                    read_nodes(interface.at("nodes"), place + "/nodes", points));
   const std::size_t count = contacts.nodes.size();
   if (interface.contains("against")) {
     const json& against = only(interface["against"], place + "/against", {"nodes", "normal"});
