@@ -23,7 +23,7 @@ SCHEMA = ROOT / "host_mock" / "schema" / "scene.schema.json"
 
 # Sections in the order of a scene: heading, then the objects of the schema that it lists.
 SECTIONS = [
-    ("The scene", [("", "")]),
+    ("The scene", [("", ""), ("units", "`units`")]),
     ("Time", [("time", "`time`")]),
     ("Models", [("model", "`model`, common to all types")]),
     ("Points", [("model_points", "`model` of type `points`"), ("point", "entries of `points`"),

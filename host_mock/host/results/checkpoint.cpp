@@ -60,7 +60,7 @@ json content_of(const std::string& file) {
 
 // The part of a scene that determines its steps, without their end and the keys of output and reading.
 json cause_of(json scene) {
-  for (const char* key : {"title", "doc", "output", "exact", "converge", "study"}) scene.erase(key);
+  for (const char* key : {"title", "doc", "units", "output", "exact", "converge", "study"}) scene.erase(key);
   scene.at("time").erase("end");
   return scene;
 }
@@ -84,9 +84,10 @@ void check_identity(const json& found, const json& expected) {
                                "), expected the very run that is to be resumed");
   const json was = cause_of(found.at("scene")), is = cause_of(expected.at("scene"));
   if (was != is)
-    throw std::runtime_error("is of another scene: " + json::diff(was, is)[0]["path"].get<std::string>() +
-                             " differs, expected no difference but in 'title', 'doc', 'output' and the 'end' "
-                             "of 'time'");
+    throw std::runtime_error(
+        "is of another scene: " + json::diff(was, is)[0]["path"].get<std::string>() +
+        " differs, expected no difference but in 'title', 'doc', 'units', 'output' and the "
+        "'end' of 'time'");
 }
 
 constexpr const char *newest = "checkpoint.cbor", *previous = "checkpoint.previous.cbor";
