@@ -142,11 +142,7 @@ int bench(const BenchOptions& options) {
     for (const std::int64_t nodes : options.nodes)
       naming_entry(one, [&] { check_bench(libraries.open(one.library), one, nodes); });
   std::optional<HeldFolder> held;
-  std::filesystem::path folder;
-  if (!options.folder.empty()) {
-    folder = std::filesystem::absolute(options.folder).lexically_normal();
-    held.emplace(folder);
-  }
+  if (!options.folder.empty()) held.emplace(options.folder);
   const std::vector<BenchResult> results = measure_all(cases, options, libraries);
   if (options.as_json) {
     json array = json::array();
@@ -154,8 +150,9 @@ int bench(const BenchOptions& options) {
     std::printf("%s\n", array.dump(2, ' ', false, json::error_handler_t::replace).c_str());
   }
   if (!held) return exit_done;
-  write_bench(results, folder);
-  return draw_bench(results, folder) ? exit_done : exit_failed;
+  remove_pictures(options.folder);
+  write_bench(results, options.folder);
+  return exit_done;
 }
 
 void add_words(CLI::App& command, BenchOptions& options) {
@@ -203,7 +200,7 @@ void add_bench(CLI::App& app, int& code) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_flag("--json", options->as_json, "Print an array of objects, one for each case");
-  command->add_option("--out", options->folder, "Folder for bench.csv, bench.png and bench.svg");
+  command->add_option("--out", options->folder, "Folder for bench.csv, which `ilaw plot` draws");
   command->footer(
       "ratio: the time over what the bytes cost at the triad's bandwidth. scalar: share of nodes solved one by\n"
       "one. -: the law cannot say. ILAW_ISA=baseline, v3 or v4 caps the instruction set.\n"

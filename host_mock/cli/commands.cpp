@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 
 namespace ilaw::host {
 
@@ -44,6 +45,19 @@ void add_sweep(CLI::App& command, SweepOptions& options, const std::string& leve
       ->check(number_from(1.01, 10.0));
   command.add_option("--refine", options.refine, "time, or mesh (with the time step)")
       ->check(CLI::IsMember({"time", "mesh"}));
+}
+
+void remove_pictures(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::filesystem::path ending = entry.path().extension();
+    if (!entry.is_regular_file() || (ending != ".png" && ending != ".svg")) continue;
+    std::string head(2000, '\0');  // it names the program that drew
+    std::ifstream(entry.path(), std::ios::binary)
+        .read(head.data(), static_cast<std::streamsize>(head.size()));
+    if (head.find("ilaw plot") != std::string::npos) found.push_back(entry.path());
+  }
+  for (const std::filesystem::path& picture : found) std::filesystem::remove(picture);
 }
 
 std::string text_of(const char* format, double value) {

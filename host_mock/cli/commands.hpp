@@ -59,6 +59,9 @@ auto in_scene(const std::filesystem::path& file, Work work) {
   }
 }
 
+// Removes the pictures in a folder that `ilaw plot` drew of earlier results.
+void remove_pictures(const std::filesystem::path& folder);
+
 // "-" where there is no number.
 std::string text_of(const char* format, double value);
 

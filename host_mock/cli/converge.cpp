@@ -45,16 +45,16 @@ void print_table(const ErrorTable& table) {
 int converge(const ConvergeOptions& options) {
   set_threads(options.threads);
   guard_against_laws();
-  const std::filesystem::path folder = std::filesystem::absolute(options.folder).lexically_normal();
   const json source = read_scene_source(options.scene);
   const Sweep sweep = options.sweep.over(read_sweep(source.value("converge", json::object())));
   const std::string title = source.value("title", options.scene.stem().string());
   check_sweep(source, sweep, options.scene);  // before anything is written
-  const HeldFolder held(folder);
+  const HeldFolder held(options.folder);
   const ErrorTable table = run_levels(source, sweep, options.scene);
-  write_convergence(table, sweep, title, folder);
+  remove_pictures(options.folder);
+  write_convergence(table, sweep, title, options.folder);
   print_table(table);
-  return draw_convergence(table, title, folder) ? exit_done : exit_failed;
+  return exit_done;
 }
 
 }  // namespace
@@ -64,7 +64,8 @@ void add_converge(CLI::App& app, int& code) {
   CLI::App* command = app.add_subcommand(
       "converge", "Run a scene at smaller and smaller steps (and meshes) and measure errors and their order");
   command->add_option("scene", options->scene, "Scene file (JSON)")->required();
-  command->add_option("--out", options->folder, "Folder for converge.csv, .json, .png and .svg")->required();
+  command->add_option("--out", options->folder, "Folder for converge.csv and .json, which `ilaw plot` draws")
+      ->required();
   add_sweep(*command, options->sweep, "Number of runs, the scene's own included", CLI::Range(2, 12));
   add_threads(*command, options->threads);
   command->footer("Example: ilaw converge host_mock/scenes/bar_on_wall.json --out results");

@@ -11,7 +11,6 @@
 #include "cli/guard.hpp"
 #include "cli/terminal.hpp"
 #include "model/elements.hpp"
-#include "plot/gnuplot.hpp"
 #include "results/checkpoint.hpp"
 #include "results/events.hpp"
 #include "results/fields.hpp"
@@ -109,14 +108,13 @@ class Run {
   // Results that an earlier run left in the folder, and pictures of them, would be taken for this one's.
   void clear() const {
     clear_checkpoints(options_.folder);
-    for (const char* name :
-         {"summary.json", "history.csv", "events.csv", "history.png", "history.svg", "view.html"})
+    for (const char* name : {"summary.json", "history.csv", "events.csv", "view.html"})
       std::filesystem::remove(options_.folder / name);
     std::vector<std::filesystem::path> earlier;
     for (const auto& entry : std::filesystem::directory_iterator(options_.folder))
       if (entry.path().filename().string().starts_with(earlier_history)) earlier.push_back(entry.path());
     for (const std::filesystem::path& file : earlier) std::filesystem::remove(file);
-    remove_pictures(options_.folder, "history|.*_over_.*");
+    remove_pictures(options_.folder);
     fields_.clear();
   }
 

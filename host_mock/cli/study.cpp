@@ -83,12 +83,13 @@ int study_scene(const std::filesystem::path& file, const std::filesystem::path& 
   check_study(source, setup, file);  // before anything is written
   const HeldFolder held(folder);
   const Study study = run_study(source, setup, file);
+  remove_pictures(folder);
   write_study(study, title, folder);
   std::printf("%s, against the %s\n", printable(title).c_str(),
               study.exact ? "exact solution" : "finest run of the first law");
   print_runs(study);
   print_costs(study);
-  return draw_study(study, title, folder) ? exit_done : exit_failed;
+  return exit_done;
 }
 
 int study(const StudyOptions& options) {
@@ -118,10 +119,9 @@ void add_study(CLI::App& app, int& code) {
   CLI::App* command = app.add_subcommand("study", "Compare laws in a scene: errors over steps and run time");
   command->add_option("scenes", options->scenes, "Scene files (JSON)")->required();
   command
-      ->add_option(
-          "--out", options->folder,
-          "Folder for study.csv, study_needed.csv, study.json, .png and .svg; each of several scenes gets one "
-          "in it")
+      ->add_option("--out", options->folder,
+                   "Folder for study.csv, study_needed.csv and study.json; each of several scenes gets one "
+                   "in it")
       ->required();
   command
       ->add_option(

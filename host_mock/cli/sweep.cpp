@@ -7,9 +7,8 @@
 #include "base/scene_error.hpp"
 #include "cli/commands.hpp"
 #include "cli/guard.hpp"
+#include "cli/run_table.hpp"
 #include "cli/terminal.hpp"
-#include "plot/gnuplot.hpp"
-#include "plot/run_table.hpp"
 #include "scene/validation.hpp"
 
 #include <algorithm>
@@ -194,7 +193,7 @@ int sweep(const RunOptions& options, const std::vector<std::string>& texts) {
                      "; nothing was run");
   }
   const HeldFolder held(options.folder);
-  remove_pictures(options.folder, "comparison|.*_over_.*");  // of an earlier sweep
+  remove_pictures(options.folder);  // of an earlier sweep
   set_threads(options.threads);
   run_all(variants, settings, source, options);
   write_table(variants, options.folder);

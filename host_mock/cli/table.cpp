@@ -3,7 +3,7 @@
 #include "cli/commands.hpp"
 
 #include "base/exit_code.hpp"
-#include "plot/run_table.hpp"
+#include "cli/run_table.hpp"
 
 #include <iostream>
 

@@ -118,24 +118,6 @@ TEST(Folder, HasNoLinkThatIsFollowed) {
   EXPECT_EQ(text_of(folder / "history.csv"), before);
 }
 
-// A picture that gnuplot could not end does not stand under its name.
-TEST(Folder, HasNoPictureThatIsCutShort) {
-  const auto folder = fresh_folder();
-  ASSERT_EQ(run_program("run " + ball + " --out " + folder.string()).code, 0);
-  const Outcome full = run_program("plot " + folder.string(), "ulimit -f 48; ");  // 24 KiB
-  EXPECT_EQ(full.code, 1) << full.output;
-  for (const char* name : {"history.svg", "history.png.drawn", "history.svg.drawn"})
-    EXPECT_FALSE(fs::exists(folder / name)) << name;
-  fs::remove(folder / "history.png");  // which is small enough
-  std::ofstream(folder / "precious") << "precious";
-  for (const char* name : {"history.png", "history.svg.drawn"})
-    fs::create_symlink(folder / "precious", folder / name);
-  EXPECT_EQ(run_program("plot " + folder.string()).code, 0);
-  EXPECT_EQ(text_of(folder / "precious"), "precious");
-  EXPECT_EQ(text_of(folder / "history.png").substr(1, 3), "PNG");
-  EXPECT_FALSE(fs::exists(folder / "history.svg.drawn"));
-}
-
 // A file may be called what is no UTF-8, which JSON cannot hold.
 TEST(Folder, MayHaveAnyName) {
   const auto folder = fresh_folder();

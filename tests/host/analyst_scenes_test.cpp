@@ -1,5 +1,4 @@
-// Scenes as an analyst writes them: each runs without a warning, is drawn, and gives what can be derived by
-// hand.
+// Scenes as an analyst writes them: each runs without a warning and gives what can be derived by hand.
 #include "run_result.hpp"
 
 namespace ilaw::host::testing {
@@ -219,88 +218,6 @@ TEST(AnalystScenes, HailGivesItsWeightToTheSlope) {
   double momentum = 0.0;
   for (int k = 0; k < 45; ++k) momentum += run.last("n" + std::to_string(k) + ".v1");
   EXPECT_NEAR(run.impulse("slope.F1") + run.impulse("weight.F1") - momentum, 45 * 10 * 0.0005, 1e-9);
-}
-
-// ---- pictures ------------------------------------------------------------------------------------------
-
-double number_after(const std::string& text, const std::string& mark) {
-  const std::size_t found = text.find(mark);
-  return found == std::string::npos ? std::nan("") : std::stod(text.substr(found + mark.size()));
-}
-
-// Long names: the picture has room for them, as gnuplot sets them in its svg.
-TEST(Picture, HasRoomForLongNames) {
-  const auto folder = fresh_folder();
-  std::ofstream(folder / "history.csv")
-      << "time,n1234.u0,n1234.a_long_interface.gap,n1234.a_long_interface.status,"
-         "n1234.another_interface.gap,n1234.another_interface.status,a_long_interface.F0,"
-         "another_interface.F0,balance.angular_momentum0,balance.angular_momentum1\n"
-         "0.1,0,1,0,4,0,0,0,1,2\n0.2,1,1,0,0,1,2,3,1,3\n";
-  std::string title;
-  for (int k = 0; k < 30; ++k) title += "wordy ";
-  std::ofstream(folder / "summary.json") << json{{"scene", {{"title", title}}}}.dump();
-  ASSERT_EQ(run_program("plot " + folder.string()).code, 0);
-  const std::string svg = text_of(folder / "history.svg"), script = text_of(folder / "history.gnuplot");
-  const double width = number_after(svg, "viewBox=\"0 0 ");
-  const auto rows = static_cast<double>(std::string("n1234.a_long_interface").size());
-  EXPECT_GT(number_after(script, "set lmargin at screen ") * width, 7.0 * rows + 30.0);
-  EXPECT_GT((1.0 - number_after(script, "set rmargin at screen ")) * width, 7.0 * rows + 50.0);
-  EXPECT_THAT(script, HasSubstr("'.\"\\n\".'"));  // the title in two lines
-  EXPECT_THAT(script, HasSubstr("'angular'.\"\\n\".'momentum'"));
-}
-
-TEST(Picture, ShowsThePanelsThatAreAskedFor) {
-  const auto folder = fresh_folder();
-  std::ofstream(folder / "history.csv")
-      << "time,n3.u0,n3.v0,n3.r0,n3.gap,n3.status,n3.damage\n0.1,0,1,0,4,0,0\n"
-         "0.2,1,1,0.1,0,0,1\n";
-  const std::string plot = "plot " + folder.string() + " --panels ";
-  ASSERT_EQ(run_program(plot + "damage,displacement").code, 0);
-  const std::string script = text_of(folder / "history.gnuplot");
-  const std::size_t damage = script.find("set label 1 'damage'"),
-                    motion = script.find("set label 1 'displacement'");
-  ASSERT_NE(damage, std::string::npos);
-  ASSERT_NE(motion, std::string::npos);
-  EXPECT_LT(damage, motion);
-  EXPECT_THAT(script, Not(HasSubstr("set label 1 'velocity'")));
-  EXPECT_THAT(
-      run_program(plot + "gap,glue"),
-      Exits(2, HasSubstr("--panels: found 'glue', expected some of gap, displacement, velocity, impulse")));
-  EXPECT_EQ(run_program(plot + "gap --x n3.u0").code, 2);
-}
-
-// One step of stick between steps of slip, and a rupture that only events.csv has.
-TEST(Picture, ShowsWhatIsRareOnTopAndNoImpulsesThatStayZero) {
-  const auto folder = fresh_folder();
-  std::ofstream(folder / "history.csv") << "time,n3.u0,n3.r0,n3.gap,n3.status\n0.1,0,0,0,3\n0.2,1,0,0,3\n"
-                                           "0.3,1,0,0,2\n0.4,2,0,0,3\n0.5,2,0,0,3\n";
-  const std::string plot = "plot " + folder.string();
-  ASSERT_EQ(run_program(plot).code, 0);
-  std::string script = text_of(folder / "history.gnuplot");
-  EXPECT_LT(script.find("now == 3"), script.find("now == 2"));
-  EXPECT_LT(script.find("title 'stick'"), script.find("title 'slip'"));
-  EXPECT_THAT(script, Not(HasSubstr("'broken'")));
-  EXPECT_THAT(script, Not(HasSubstr("'impulse'")));
-  std::ofstream(folder / "events.csv") << "time,node,interface,event,r0\n0.17,3,glue,rupture,0\n";
-  ASSERT_EQ(run_program(plot).code, 0);
-  script = text_of(folder / "history.gnuplot");
-  EXPECT_THAT(script, HasSubstr("\n0.17,1\n"));
-  EXPECT_LT(script.find("title 'slip'"), script.find("title 'broken'"));
-}
-
-// Every run's own pictures, and nobody else's.
-TEST(Picture, OfColumnsIsRemovedByANewRun) {
-  const auto folder = fresh_folder();
-  const std::string run = "run " + file_of("bonded_bars").string() + " --out " + folder.string();
-  ASSERT_EQ(run_program(run).code, 0);
-  ASSERT_EQ(run_program("plot " + folder.string() + " --y joint.F0").code, 0);
-  ASSERT_TRUE(fs::exists(folder / "joint.F0_over_time.png"));
-  std::ofstream(folder / "my_over_all.png") << "mine";
-  std::ofstream(folder / "my_over_all.gnuplot") << "plot sin(x)";
-  ASSERT_EQ(run_program(run).code, 0);
-  for (const char* ending : {".png", ".svg", ".gnuplot"})
-    EXPECT_FALSE(fs::exists(folder / ("joint.F0_over_time" + std::string(ending)))) << ending;
-  EXPECT_TRUE(fs::exists(folder / "my_over_all.png"));
 }
 
 // ---- mistakes and warnings -----------------------------------------------------------------------------

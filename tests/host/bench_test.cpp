@@ -3,8 +3,6 @@
 #include "host_runner.hpp"
 #include "support/law_cases.hpp"
 
-#include <regex>
-
 namespace ilaw::host::testing {
 namespace {
 
@@ -115,7 +113,7 @@ TEST(Bench, TellsHowManyNodesAreSolvedOneByOne) {
   EXPECT_TRUE(foreign[0]["scalar_share"].is_null());
 }
 
-TEST(Bench, LeavesATableAndAPicture) {
+TEST(Bench, LeavesATable) {
   const auto folder = fresh_folder();
   const Outcome outcome =
       run_program("bench contact coulomb --nodes 20 30 --repetitions 1 --out " + folder.string());
@@ -125,59 +123,11 @@ TEST(Bench, LeavesATableAndAPicture) {
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "law,case,nodes,ns_per_node,bytes_per_node,triad_gb_per_s,ratio,isa,scalar_share");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
-  EXPECT_TRUE(fs::exists(folder / "bench.png"));
-  EXPECT_THAT(text_of(folder / "bench.svg"), HasSubstr("coulomb"));
-}
-
-struct PanelEdges {
-  double left, right;
-};
-
-// Panels of the first picture in a script, in pixels.
-std::vector<PanelEdges> panels_in(const std::string& script) {
-  std::smatch found;
-  EXPECT_TRUE(std::regex_search(script, found, std::regex("size ([0-9.]+),")));
-  const double width = std::stod(found[1]);
-  const std::string picture = script.substr(0, script.find("unset multiplot"));
-  const std::regex edges("set lmargin at screen ([0-9.e-]+)\nset rmargin at screen ([0-9.e-]+)\n");
-  std::vector<PanelEdges> panels;
-  for (std::sregex_iterator k(picture.begin(), picture.end(), edges), end; k != end; ++k)
-    panels.push_back({std::stod((*k)[1]) * width, std::stod((*k)[2]) * width});
-  EXPECT_LE(panels.empty() ? 0.0 : panels.back().right, width);
-  return panels;
 }
 
 std::string file_of_cases(const fs::path& folder, const json& entries) {
   std::ofstream(folder / "cases.json") << json{{"benchmarks", entries}};
   return "--cases " + (folder / "cases.json").string();
-}
-
-// Labels stand once, and take nothing from the panels beside them, however long they are.
-TEST(Bench, DrawsPanelsBesideTheirLabels) {
-  for (const std::size_t letters : {10, 90, 300}) {
-    const auto folder = fresh_folder();
-    const json entry = {{"law", "contact"}, {"what", std::string(letters, 'x')}};
-    std::string nodes = " --nodes";
-    for (std::size_t count = 1; count <= 3; ++count) {
-      nodes += " " + std::to_string(10 * count);
-      const Outcome outcome = run_program("bench " + file_of_cases(folder, json::array({entry})) + nodes +
-                                          " --repetitions 1 --out " + (folder / "out").string());
-      ASSERT_EQ(outcome.code, 0) << outcome.output;
-      const std::string script = text_of(folder / "out/bench.gnuplot");
-      const std::vector<PanelEdges> panels = panels_in(script);
-      ASSERT_EQ(panels.size(), count) << script;
-      double before = 7.0 * static_cast<double>(std::min<std::size_t>(letters, 100));
-      for (const PanelEdges& panel : panels) {
-        EXPECT_GT(panel.left, before);
-        EXPECT_GT(panel.right - panel.left, 300.0);
-        before = panel.right + 20.0;  // numbers of the axis reach beyond its end
-      }
-      const std::string svg = text_of(folder / "out/bench.svg");
-      const std::size_t first = svg.find("contact: xxx");
-      EXPECT_NE(first, std::string::npos);
-      EXPECT_EQ(svg.find("contact: xxx", first + 1), std::string::npos);
-    }
-  }
 }
 
 // As on the command line: all laws of the library.

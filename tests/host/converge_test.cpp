@@ -24,8 +24,6 @@ Study study_of(const json& scene, const std::string& options) {
   if (study.outcome.code != 0) return study;
   study.orders = json_of(results / "converge.json");
   study.table = table_of(results / "converge.csv");
-  EXPECT_EQ(text_of(results / "converge.png").substr(1, 3), "PNG");
-  EXPECT_THAT(text_of(results / "converge.svg"), HasSubstr("<svg"));
   return study;
 }
 
@@ -243,8 +241,7 @@ TEST(Converge, RefinesMeshAndStepTogether) {
   EXPECT_NEAR(study.table.at("steps")[1] / study.table.at("steps")[0], 2.0, 0.1);
 }
 
-// gnuplot is given names and titles in single quotes.
-TEST(Converge, DrawsIntoAFolderWithAQuote) {
+TEST(Converge, WritesIntoAFolderWithAQuote) {
   const auto folder = fresh_folder() / "it's here";
   json scene = ball(0.5);
   scene["title"] = "The ball's flight";
@@ -253,7 +250,6 @@ TEST(Converge, DrawsIntoAFolderWithAQuote) {
   const Outcome outcome = run_program("converge \"" + (folder / "scene.json").string() +
                                       "\" --levels 3 --out \"" + folder.string() + "\"");
   EXPECT_EQ(outcome.code, 0) << outcome.output;
-  EXPECT_TRUE(fs::exists(folder / "converge.png"));
   EXPECT_EQ(json_of(folder / "converge.json")["title"], scene["title"]);
 }
 

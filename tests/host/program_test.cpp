@@ -50,13 +50,12 @@ TEST(Program, TellsBadInputFromFailureByItsExitCode) {
     EXPECT_THAT(run_program(command + ball + " --out /proc"), Exits(2, StartsWith("ilaw: --out /proc: ")));
   }
   EXPECT_EQ(run_program("describe no_such_law").code, 2);
-  EXPECT_THAT(run_program("plot " + folder.string()),
-              Exits(2, "ilaw: " + (folder / "history.csv").string() +
-                           ": found no such file, expected the history of watched nodes that `ilaw run "
-                           "SCENE --out " +
-                           folder.string() + "` writes\n"));
+  EXPECT_THAT(
+      run_program("plot " + folder.string()),
+      Exits(2, "ilaw: " + folder.string() +
+                   ": found no summary.json, expected a folder that `ilaw run SCENE --out DIR` wrote\n"));
   EXPECT_EQ(run_program("plot " + ball).output,
-            "ilaw: " + ball + ": found a file, expected a folder that `ilaw run SCENE --out FOLDER` wrote\n");
+            "ilaw: " + ball + ": found a file, expected a folder that `ilaw run SCENE --out DIR` wrote\n");
   for (const char* command :
        {"", "run", "plot", "view", "converge", "study", "list", "describe", "stress", "check", "bench"}) {
     EXPECT_THAT(run_program(std::string(command) + " --help"), Exits(0, HasSubstr("Example: "))) << command;
@@ -328,21 +327,6 @@ TEST(Program, ShowsItsProgressOnATerminalOnly) {
 TEST(Program, DrawsNothingForAShortRun) {
   const auto folder = fresh_folder();
   EXPECT_EQ(said_on_terminal(ball, folder).find('['), std::string::npos);
-}
-
-TEST(Program, DrawsAHistory) {
-  const auto folder = fresh_folder();
-  ASSERT_EQ(run_program("run " + ball + " --out " + folder.string()).code, 0);
-  const Outcome outcome = run_program("plot " + folder.string());
-  EXPECT_EQ(outcome.code, 0) << outcome.output;
-  EXPECT_EQ(text_of(folder / "history.png").substr(1, 3), "PNG");
-  EXPECT_THAT(text_of(folder / "history.svg"), HasSubstr("<svg"));
-  // Elsewhere, if asked to.
-  fs::create_directories(folder / "pictures");
-  const std::string elsewhere = "plot " + folder.string() + " --out " + (folder / "pictures").string();
-  ASSERT_EQ(run_program(elsewhere).code, 0);
-  EXPECT_EQ(text_of(folder / "pictures" / "history.png").substr(1, 3), "PNG");
-  EXPECT_EQ(run_program(elsewhere + "/nowhere").code, 2);
 }
 
 TEST(Program, ListsAndDescribesLaws) {

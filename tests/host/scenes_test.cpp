@@ -123,31 +123,5 @@ TEST(PostitScenes, Test3) {
                                       {1.665, ILAW_BROKEN, 0.0}});
 }
 
-// A rupture between two rows is in no row: the key names what is drawn. Nor is a state drawn that stays zero.
-TEST(Plot, NamesWhatItDraws) {
-  const auto folder = fresh_folder();
-  std::ofstream(folder / "history.csv") << "time,n3.u0,n3.u1,n3.gap,n3.status,n3.spring0,n3.damage,"
-                                           "n7.u0,n7.u1,n7.gap,n7.status,n7.spring0,n7.damage\n"
-                                           "0.1,0,1,0,4,0,0,0,1,0,4,0,0.5\n0.2,1,1,0.1,0,0,0,0,1,0,4,0,1\n";
-  const Outcome outcome = run_program("plot " + folder.string());
-  ASSERT_EQ(outcome.code, 0) << outcome.output;
-  const std::string script = text_of(folder / "history.gnuplot");
-  for (const char* drawn : {"'free'", "'bonded'", "'damage'", "'n3'", "'n7'", "'u0'", "'u1'"})
-    EXPECT_THAT(script, HasSubstr(drawn)) << drawn;
-  for (const char* absent : {"'broken'", "'healed'", "'spring0'", "'n3.u0'"})
-    EXPECT_THAT(script, Not(HasSubstr(absent))) << absent;
-}
-
-// gnuplot runs what stands between backquotes, but in single quotes.
-TEST(Plot, RunsNoCommandOfATitle) {
-  const auto folder = fresh_folder(), made = folder / "made";
-  std::ofstream(folder / "history.csv") << "time,n0.u0\n0,0\n1,1\n";
-  std::ofstream(folder / "summary.json")
-      << R"({"scene": {"title": "It's `touch )" << made.string() << "`\"}}";
-  const Outcome outcome = run_program("plot " + folder.string());
-  EXPECT_EQ(outcome.code, 0) << outcome.output;
-  EXPECT_FALSE(fs::exists(made));
-}
-
 }  // namespace
 }  // namespace ilaw::host::testing

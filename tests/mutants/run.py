@@ -57,9 +57,7 @@ AREAS = {
                                                "checkpoint_test", "resume_test"]),
     "study": Area("host_mock/instruments/study", ["converge_test", "study_test"]),
     "stress": Area("host_mock/instruments/stress", ["stress_test"]),
-    "plot": Area("host_mock/instruments/plot", ["analyst_scenes_test"]),
-    "cli": Area("host_mock/cli", ["program_test", "runs_test", "resume_test", "keys_test", "study_test", "bench_test",
-                                  "question_page_test"])}
+    "cli": Area("host_mock/cli", ["program_test", "runs_test", "resume_test", "keys_test", "study_test", "bench_test"])}
 SWITCH = """#pragma once
 #include <cstdlib>
 // Read when a program or law is loaded, so that evaluate stays pure.

@@ -84,7 +84,7 @@ class Run:
         self.folder = folder
         file = folder / "summary.json"
         if not file.is_file():
-            found = "no summary.json" if folder.is_dir() else "no such folder"
+            found = "no summary.json" if folder.is_dir() else "a file" if folder.exists() else "no such folder"
             raise UnreadableRun(f"{folder}: found {found}, expected a folder that `ilaw run SCENE --out DIR` wrote")
         try:
             self.summary = json.loads(file.read_text(encoding="utf-8"))

@@ -14,83 +14,38 @@ from typing import Any, Optional, Sequence
 
 import numpy as np
 
+from ._curves import Curve, thinned, visible
+from ._curves import curves_of as columns_of
 from ._film import Blocks, film_of_fields
 from ._results import STATUS_NAMES, Run, UnreadableRun
 from ._no_fields import film_of_boxes, film_of_points
 
 THREE = Path(os.environ.get("ILAW_THREE", "/usr/share/javascript/three"))
 MOST_ROWS, MOST_CURVES, MOST_EVENTS = 4000, 8, 2000
-ROUNDING = 1e-12  # of the largest value of a quantity: what is below is not drawn
 
 
-def thinned_rows(rows: np.ndarray, most: int) -> np.ndarray:
-    """Least and largest value of each stretch of time, so that peaks stay."""
-    stretch = -(-len(rows) // (most // 2)) if len(rows) > most else 1
-    if stretch == 1:
-        return rows
-    whole = len(rows) // stretch * stretch
-    parts = rows[:whole].reshape(-1, stretch, rows.shape[1])
-    found = np.empty((2 * len(parts), rows.shape[1]))
-    found[0::2], found[1::2] = parts.min(axis=1), parts.max(axis=1)
-    found[0::2, 0], found[1::2, 0] = parts[:, 0, 0], parts[:, stretch // 2, 0]
-    return np.concatenate([found, rows[whole:][-1:]])
-
-
-class Panel:
-    def __init__(self, title: str, unit: str, curves: list[tuple[str, int]]) -> None:
-        self.title, self.unit, self.curves = title, unit, curves
-
-
-def panels_of(run: Run, names: list[str]) -> list[Panel]:
+def panels_of(run: Run, names: list[str]) -> dict[str, list[Curve]]:
     """Curves beside the bodies: energies, forces, then the motion and the interface of watched nodes."""
-    column = {name: k for k, name in enumerate(names)}
-    axes = "xyz"
-    balance = {
-        name[8:].replace("_", " "): k
-        for name, k in column.items()
-        if name.startswith("balance.") and not name.startswith(("balance.error", "balance.angular"))
-    }
-    node = re.compile(r"n(\d+)\.(?:(.+)\.)?([^.]+)$")
-    forces = [
-        (re.sub(r"\.F(\d)$", lambda m: " " + axes[int(m[1])], name), k)
-        for name, k in column.items()
-        if re.search(r"\.F\d$", name) and not node.match(name)
-    ]
-    energies = list(balance.items())
-    found = [Panel("energy", run.unit_of("energy"), energies), Panel("force", run.unit_of("force"), forces)]
-    motion: dict[str, list[tuple[str, int]]] = {}
-    for name, k in column.items():
-        match = node.match(name)
-        if not match:
-            continue
-        number, interface, quantity = match.groups()
-        kind = re.sub(r"\d$", "", quantity) if quantity[:-1] in ("u", "v", "vm", "r") else quantity
-        label = f"node {number}" + (f" {interface}" if interface else "")
-        label += " " + axes[int(quantity[-1])] if kind != quantity else ""
-        motion.setdefault(kind, []).append((label, k))
-    known = {"u": ("displacement", "length"), "v": ("velocity", "velocity"), "r": ("impulse of a step", "impulse"),
-             "gap": ("gap", "length"), "T": ("temperature", "temperature")}  # fmt: skip
-    for kind, curves in motion.items():
-        if kind not in ("vm", "status"):
-            title, quantity = known.get(kind, (kind.replace("_", " "), ""))
-            found.append(Panel(title, run.unit_of(quantity) if quantity else "", curves))
+    found: dict[str, list[Curve]] = {"energy": [], "force": []}
+    for curve in columns_of(run, names):
+        if not re.search("status|mean velocity|error|angular momentum|moment", curve.quantity):
+            found.setdefault(curve.quantity, []).append(curve)
     return found
 
 
 def curves_of(run: Run, blocks: Blocks, names: list[str], rows: np.ndarray) -> list[dict[str, Any]]:
-    rows = thinned_rows(rows, MOST_ROWS)
+    rows = thinned(rows, MOST_ROWS)
     if not len(rows):
         return []
     time, shown = blocks.add(rows[:, 0], "<f8"), []
-    for panel in panels_of(run, names):
-        spread = {k: float(np.abs(rows[:, k]).max()) for _, k in panel.curves if np.isfinite(rows[:, k]).all()}
-        largest = max(spread.values(), default=0.0)
-        curves = [(label, k) for label, k in panel.curves if spread.get(k, 0.0) > ROUNDING * largest]
-        kept = set(sorted((k for _, k in curves), key=lambda k: -float(np.ptp(rows[:, k])))[:MOST_CURVES])
+    for quantity, of_panel in panels_of(run, names).items():
+        curves = [c for c in visible(of_panel, rows)[0] if np.isfinite(rows[:, c.index]).all()]
+        kept = set(sorted(curves, key=lambda c: -float(np.ptp(rows[:, c.index])))[:MOST_CURVES])
         if curves:
-            drawn = [{"name": label, "values": blocks.add(rows[:, k], "<f4")} for label, k in curves if k in kept]
-            left_out = len(curves) - len(kept)
-            shown.append({"title": panel.title, "unit": panel.unit, "time": time, "leftOut": left_out, "curves": drawn})
+            drawn = [{"name": c.label, "values": blocks.add(rows[:, c.index], "<f4")} for c in curves if c in kept]
+            title = "impulse of a step" if quantity == "impulse" else quantity
+            shown.append({"title": title, "unit": run.unit_of(curves[0].dimension), "time": time,
+                          "leftOut": len(curves) - len(kept), "curves": drawn})  # fmt: skip
     return shown
 
 

@@ -34,7 +34,5 @@ BenchResult run_bench(const ilaw::library& library, const BenchCase& bench_case,
 nlohmann::json json_of(const BenchResult& result);
 // bench.csv in the folder.
 void write_bench(const std::vector<BenchResult>& results, const std::filesystem::path& folder);
-// bench.png and .svg of it. The folder is absolute.
-bool draw_bench(const std::vector<BenchResult>& results, const std::filesystem::path& folder);
 
 }  // namespace ilaw::host

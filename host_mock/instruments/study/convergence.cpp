@@ -3,7 +3,6 @@
 
 #include "base/csv.hpp"
 #include "base/files.hpp"
-#include "plot/gnuplot.hpp"
 #include "scene/json_text.hpp"
 
 #include <cstdio>
@@ -52,27 +51,6 @@ void write_orders(const ErrorTable& table, const Sweep& sweep, const std::string
   write_file(folder / "converge.json", found.dump(2) + "\n");
 }
 
-// Errors over one column of the table, in the given unit.
-struct Abscissa {
-  int column;
-  double unit;
-  const char *label, *key_corner;
-};
-
-void write_panel(const ErrorTable& table, const std::string& csv, const Abscissa& over,
-                 std::ostream& script) {
-  script << "set xlabel '" << over.label << "'\nset key bottom " << over.key_corner << " noenhanced\nplot ";
-  for (std::size_t n = 0; n < 3; ++n)
-    script << (n ? ", " : "") << csv << " using ($" << over.column << '/' << over.unit << "):" << n + 4
-           << " with linespoints linewidth 1.5 pointtype " << n + 5 << " linecolor rgb '" << curve_colours[n]
-           << "' title '" << norm_names[n] << "'";
-  if (over.column == 1) {
-    const double h = table.runs[0].dt, top = table.errors[0][norm_u_L2];
-    script << ", " << top / h << "*x with lines dashtype 2 linecolor rgb '#808080' title 'order 1'";
-  }
-  script << "\n";
-}
-
 }  // namespace
 
 double ErrorTable::order(std::size_t norm) const {
@@ -111,19 +89,6 @@ void write_convergence(const ErrorTable& table, const Sweep& sweep, const std::s
                        const std::filesystem::path& folder) {
   write_table(table, folder);
   write_orders(table, sweep, title, folder);
-}
-
-bool draw_convergence(const ErrorTable& table, const std::string& title,
-                      const std::filesystem::path& folder) {
-  // Run times of machines differ: over that of the finest run that is compared.
-  const double finest = table.runs[table.errors.size() - 1].seconds;
-  const std::string csv = in_quotes((folder / "converge.csv").string());
-  const Sheet sheet{folder / "converge", 1000, 460, "layout 1,2 title " + in_quotes(title) + " noenhanced"};
-  return draw_sheet(sheet, [&](std::ostream& script) {
-    script << log_axes;
-    write_panel(table, csv, {1, 1.0, "time step", "right"}, script);
-    write_panel(table, csv, {3, finest, "run time / that of the finest run", "left"}, script);
-  });
 }
 
 }  // namespace ilaw::host

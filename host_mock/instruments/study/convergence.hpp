@@ -32,8 +32,4 @@ ErrorTable run_levels(const nlohmann::json& source, const Sweep& sweep, const st
 void write_convergence(const ErrorTable& table, const Sweep& sweep, const std::string& title,
                        const std::filesystem::path& folder);
 
-// converge.png and .svg, by gnuplot: errors over the time step, and over the run time. The folder
-// is absolute. Says on stderr why there are none.
-bool draw_convergence(const ErrorTable& table, const std::string& title, const std::filesystem::path& folder);
-
 }  // namespace ilaw::host

@@ -68,8 +68,4 @@ constexpr std::array<double, 7> wanted_errors{1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4
 // largest stable steps.
 void write_study(const Study& study, const std::string& title, const std::filesystem::path& folder);
 
-// study.png and .svg, by gnuplot: errors over the number of steps and over the run time. The folder is
-// absolute. Says on stderr why there are none.
-bool draw_study(const Study& study, const std::string& title, const std::filesystem::path& folder);
-
 }  // namespace ilaw::host

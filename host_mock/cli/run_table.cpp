@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plot/run_table.hpp"
+#include "cli/run_table.hpp"
 
 #include "base/csv.hpp"
 #include "base/scene_error.hpp"
 #include "base/words.hpp"
-#include "plot/history_file.hpp"
+#include "cli/history_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +100,6 @@ std::string RunFolder::said(const std::string& pointer) const {
 }
 
 RunFolder open_run(const std::filesystem::path& folder) {
-  // gnuplot takes file names that begin with < or | for commands: an absolute path never does.
   std::filesystem::path path = std::filesystem::absolute(folder).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();
   std::ifstream stream(path / "summary.json");
