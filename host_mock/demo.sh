@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the program and the laws in Release, runs the shipped scenes and draws them.
+# Builds the program and the laws in Release, runs the shipped scenes, and makes a page of them that moves.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -16,7 +16,6 @@ cmake --build --preset release "${quiet[@]}"
 for scene in host_mock/scenes/*.json plugins/*/*.json; do
   results=build/release/demo/$(basename "$scene" .json)
   build/release/bin/ilaw run "$scene" --out "$results"
-  build/release/bin/ilaw plot "$results" >/dev/null
 done
-echo
-echo "Pictures: build/release/demo/*/history.png; open first build/release/demo/postit_test3/history.png"
+echo "pictures: build/release/demo"
+/usr/bin/python3 host_mock/demo_page.py build/release/demo
