@@ -1,28 +1,12 @@
-#!/usr/bin/env python3
-"""Draws the gallery of the shipped scenes, docs/img/gallery.png, and the scenes of docs/scenes.md.
-
-    host_mock/demo.sh && docs/make_gallery.py build/release/demo [PROGRAM]
-
-The folder has the results of the demo. PROGRAM (build/release/bin/ilaw) runs the scenes of the page. Needs matplotlib.
-"""
+"""The gallery of the shipped scenes, docs/img/gallery.png, which docs/make_pictures.py draws."""
 # SPDX-License-Identifier: BSD-3-Clause
 
 import csv
-import re
-import subprocess
-import sys
-import tempfile
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+from ilaw._figure import COLORS, plt
 
 DOCS = Path(__file__).resolve().parent
-COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7"]
-plt.rcParams.update({"font.size": 8, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
-                     "grid.color": "#e4e4e4", "grid.linewidth": 0.6, "axes.axisbelow": True, "lines.linewidth": 1.2})
 
 # Scene: abscissa, label of it, label of the ordinate, curves as column or (column, legend).
 SCENES = {
@@ -74,9 +58,6 @@ def thinned(values, most=1500):
 
 
 def gallery(folder):
-    missing = [name for name in SCENES if not (folder / name / "history.csv").exists()]
-    if missing:
-        sys.exit(f"{folder} has no results of {', '.join(missing)}: run host_mock/demo.sh")
     across = 5
     down = -(-len(SCENES) // across)
     figure, grid = plt.subplots(down, across, figsize=(2.35 * across, 1.75 * down))
@@ -96,26 +77,3 @@ def gallery(folder):
             axes.legend(fontsize=6.5, frameon=False, handlelength=1.2, borderpad=0, labelspacing=0.2)
     figure.tight_layout(h_pad=0.9, w_pad=0.6)
     figure.savefig(DOCS / "img" / "gallery.png", dpi=95, metadata={"Software": None})
-
-
-def scenes_of_page(program):
-    scenes = re.findall(r"```json\n(.*?)```", (DOCS / "scenes.md").read_text(), re.S)
-    pictures = [("first_scene", "displacement,velocity,force,status"), ("pressed_pad", "force,status")]
-    for scene, (name, panels) in zip(scenes, pictures, strict=True):
-        with tempfile.TemporaryDirectory() as folder:
-            file, results = Path(folder) / "scene.json", Path(folder) / "results"
-            file.write_text(scene)
-            subprocess.run([program, "run", file, "--out", results], check=True, stdout=subprocess.DEVNULL)
-            subprocess.run([program, "plot", results, "--panels", panels], check=True, stdout=subprocess.DEVNULL)
-            (DOCS / "img" / f"{name}.png").write_bytes((results / "history.png").read_bytes())
-
-
-def main():
-    if len(sys.argv) not in (2, 3):
-        sys.exit(__doc__)
-    gallery(Path(sys.argv[1]))
-    scenes_of_page(sys.argv[2] if len(sys.argv) > 2 else DOCS.parent / "build/release/bin/ilaw")
-
-
-if __name__ == "__main__":
-    main()

@@ -44,7 +44,6 @@ measure_order() {
   echo "converge: $name"
   "$ilaw" converge "$scene" --out "$out" "${@:3}" >/dev/null 2>&1
   cut --delimiter=, --fields=1,2,4- "$out/converge.csv" >"$here/tables/$name.csv"  # bare seconds mean nothing elsewhere
-  cp "$out/converge.png" "$here/img/$name.png"
   # Two decimals, without the sign of a zero.
   local found
   found=$(value "$out/converge.json" '[.reference, .levels] | @csv' | tr -d '"')
@@ -124,6 +123,7 @@ measure_study() {
   "$ilaw" study "$scene" --out "$out" "${@:3}" >"$work/study_$name.txt" 2>&1
   study_table "$out" >"$here/tables/study_$name.csv"
   study_runs "$out" >"$here/tables/study_runs_$name.csv"
+  "$ilaw" plot "$out" >/dev/null
   cp "$out/study.png" "$here/img/study_$name.png"
   if grep --quiet '^explicit' "$out/study.csv"; then penalty_rows "$name" "$out" >>"$penalties"; fi
 }
@@ -229,4 +229,5 @@ put_tables() {
   cp "$work/page.md" "$1"
 }
 for page in $here/README.md $here/study.md docs/theory/resolved_impact.md; do put_tables "$page"; done
+docs/make_pictures.py "$ilaw"
 echo "done: $here"
