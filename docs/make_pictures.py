@@ -30,6 +30,7 @@ sys.path[:0] = [str(ROOT / "api/python"), str(ROOT / "docs")]
 sys.dont_write_bytecode = True
 
 import make_gallery  # noqa: E402
+import make_moving  # noqa: E402
 import make_sketches  # noqa: E402
 from ilaw import plot  # noqa: E402
 from ilaw._curves import curves_of, visible  # noqa: E402
@@ -53,7 +54,8 @@ MEASURED = {
     "docs/results/img/calculix.png": "docs/results/calculix.py", "docs/results/img/fault.png": "docs/results/fault.py",
     "docs/results/img/tyre_block.png": "docs/results/tyre_block.py",
     "docs/img/oblique_sphere.svg": "docs/results/oblique_sphere.py",
-    "docs/img/contact_problems.png": "tests/bench/contact_problems.py", "docs/img/dealii_peel.svg": "api/dealii/compare.py",
+    "docs/img/contact_problems.png": "tests/bench/contact_problems.py",
+    "docs/img/dealii_peel.svg": "api/dealii/compare.py",
 }  # fmt: skip
 for study in ("bar_on_wall", "block_impact", "bouncing_ball", "glued_bar", "held_rod", "oblique_impact", "postit_3d"):
     MEASURED[f"docs/results/img/study_{study}.png"] = f"docs/results/tables/study_{study}.csv"
@@ -124,7 +126,8 @@ def pictures_of_runs() -> list[Picture]:
         found.append(of_runs(name, [c for c in commands if f"results/{name}" in c]))
     scenes = re.findall(r"```json\n(.*?)```", (ROOT / "docs/scenes.md").read_text(encoding="utf-8"), re.S)
     for scene, (name, panels) in zip(scenes, PANELS_OF_SCENES.items()):
-        found.append(of_runs(name, ["ilaw run scene.json --out results", f"ilaw plot results --panels '{panels}'"], scene))
+        commands = ["ilaw run scene.json --out results", f"ilaw plot results --panels '{panels}'"]
+        found.append(of_runs(name, commands, scene))
     for name, panels in PANELS_OF_LAWS.items():
         run = f"ilaw run {scene_file(name)} --out results"
         found.append(of_runs(name, [run, f"ilaw plot results --panels '{panels}'"]))
@@ -141,13 +144,21 @@ def gallery() -> Picture:
     return Picture("docs/img/gallery.png", lambda _: curves, draw, [scene_file(name) for name in make_gallery.SCENES])
 
 
+def moving(name: str) -> Picture:
+    path, every = make_moving.SCENES[name]
+    said = json.dumps([every, make_moving.FIELDS.get(name), make_moving.FRAMES]).encode()
+    draw = functools.partial(make_moving.draw, name)
+    return Picture(f"docs/img/moving_{name}.webp", lambda _: said, draw, [f"{path}.json"])
+
+
 # ---- pictures of tables and sketches ---------------------------------------------------------------------------------
 
 
 def of_table(name: str) -> Picture:
     scene = "docs/results/scenes" if name.startswith("bouncing_ball_") else None
     file = ROOT / (f"{scene}/{name}.json" if scene else scene_file(name.replace("_cfl1", "")))
-    title = json.loads(file.read_text(encoding="utf-8"))["title"] + (", at the critical step" if "_cfl1" in name else "")
+    title = json.loads(file.read_text(encoding="utf-8"))["title"]
+    title += ", at the critical step" if "_cfl1" in name else ""
     table = f"docs/results/tables/{name}.csv"
 
     def draw(_: Path) -> None:
@@ -196,11 +207,12 @@ def of_sketch(function: Callable[[], None]) -> Picture:
 
 def pictures() -> list[Picture]:
     measured = [Picture(path, lambda _: b"", None, [source]) for path, source in MEASURED.items()]
-    return [*pictures_of_runs(), gallery(), *map(of_table, CONVERGED), *map(of_sketch, make_sketches.PICTURES), *measured]
+    runs = [*pictures_of_runs(), gallery(), *map(moving, make_moving.SCENES)]
+    return [*runs, *map(of_table, CONVERGED), *map(of_sketch, make_sketches.PICTURES), *measured]
 
 
 def hash_of(file: Path) -> str:
-    return hashlib.sha256(file.read_bytes()).hexdigest()[:16]
+    return hashlib.sha256(file.read_bytes()).hexdigest()[:16] if file.is_file() else ""
 
 
 def main() -> int:
@@ -218,13 +230,13 @@ def main() -> int:
             for file in picture.files:
                 digest.update((ROOT / file).read_bytes())
             before = record.get(picture.path)
-            now = {"inputs": digest.hexdigest()[:16], "picture": hash_of(ROOT / picture.path)}
+            now = f"{digest.hexdigest()[:16]} {hash_of(ROOT / picture.path)}"  # inputs, picture
             if picture.draw and not options.check and (options.all or before != now):
                 print(picture.path, flush=True)
                 picture.draw(Path(folder))
-                now["picture"] = hash_of(ROOT / picture.path)
+                now = f"{digest.hexdigest()[:16]} {hash_of(ROOT / picture.path)}"
             # A picture that another script draws is new if its bytes are.
-            elif before != now and (options.check or before and before["picture"] == now["picture"]):
+            elif before != now and (options.check or before and before.split()[1:] == now.split()[1:]):
                 by = "docs/make_pictures.py" if picture.draw else f"what draws it from {picture.files[0]}"
                 old.append(f"{picture.path}: found other inputs than it was drawn from: run {by}")
                 now = before
