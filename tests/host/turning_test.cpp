@@ -231,6 +231,86 @@ TEST(TurningObstacle, DissipatesRelativeToItsSurface) {
   EXPECT_LT(energy.balance_error, 1e-13);
 }
 
+// A point on a sphere that starts to spin. Alone, and with an interface out of reach, so that contacts are
+// solved together: as the start is faster than the bound on speeds, that step is solved more than once.
+json on_spinning_sphere(const json& interface, const json& gravity) {
+  json scene = json::parse(R"({"model": {"type": "points", "dimension": 3, "points": [
+      {"mass": 1, "position": [0.1, 0, 0.79372539331937719]}]}, "time": {"dt": 0.01, "end": 1},
+    "loads": [{"type": "gravity"}], "interfaces": [{"nodes": "all", "obstacle": {"type": "sphere",
+      "center": [0, 0, 0], "radius": 0.8, "axis": [0, 0, 1], "angles": [[0, 0], [0.2, 0], [1.2, 20]]}}]})");
+  scene["loads"][0]["acceleration"] = gravity;
+  scene["interfaces"][0].update(interface);
+  return scene;
+}
+const json out_of_reach = json::parse(
+    R"({"law": "contact", "nodes": "all", "obstacle": {"type": "plane", "point": [0, 0, -100], "normal": [0, 0, 1]}})");
+
+// Laws of the tree that remember vectors, with the parameters of their tests, and two stiff bonds.
+std::vector<json> laws_that_remember_vectors() {
+  std::vector<json> laws = {
+      {{"law", "cohesive"}, {"parameters", {{"stiffness", 1e4}, {"strength", 1e3}, {"toughness", 1e3}}}},
+      {{"law", "rccm"},
+       {"parameters", {{"normal_stiffness", 1e4}, {"tangential_stiffness", 1e4}, {"adhesion_energy", 1e3}}}}};
+  for (const auto& folder : fs::directory_iterator(ILAW_SOURCE "/tests/laws"))
+    if (std::ifstream file(folder.path() / "cases.json"); file)
+      for (const json& entry : json::parse(file).value("frame", json::array()))
+        laws.push_back({{"law", folder.path().filename()}, {"parameters", entry["parameters"]}});
+  return laws;
+}
+
+TEST(TurningObstacle, TurnsMemoryOncePerStep) {
+  const std::vector<json> laws = laws_that_remember_vectors();
+  EXPECT_GT(laws.size(), 6U);
+  Random random(7);
+  for (const json& law : laws)
+    for (int k = 0; k < 5; ++k) {
+      const json gravity = {3.0 * random(), 3.0 * random(), -random(0.1, 30.0)};
+      GIVEN(law["law"], gravity.dump());
+      json source = on_spinning_sphere(law, gravity);
+      auto [alone, plain] = simulation_of(source);
+      source["interfaces"].push_back(out_of_reach);
+      auto [shared, coupled] = simulation_of(source);
+      for (double fastest = 1.0; plain.steps() < alone.steps;) {
+        plain.step();
+        coupled.step();
+        fastest = std::max(fastest, plain.velocity().norm());
+        ASSERT_LT((plain.velocity() - coupled.velocity()).norm(), 1e-11 * fastest) << plain.time();
+        for (int entry = 0; entry < static_cast<int>(alone.interfaces[0]->info().state_size); ++entry) {
+          const double state = alone.interfaces[0]->state_at(0, plain.displacement())[entry];
+          ASSERT_NEAR(shared.interfaces[0]->state_at(0, coupled.displacement())[entry], state,
+                      1e-11 * std::max(1.0, std::abs(state)));
+        }
+      }
+    }
+}
+
+// From time 0.5 on the second point is driven against a rigid floor, which ends the run.
+TEST(TurningObstacle, LeavesNoTraceOfARefusedStep) {
+  for (const json& law : laws_that_remember_vectors()) {
+    GIVEN(law["law"]);
+    json source = on_spinning_sphere(law, {0, -1, -10});
+    source["model"]["points"].push_back({{"mass", 1}, {"position", {9, 0, 0.5}}});
+    source["interfaces"][0]["nodes"] = {0};
+    source["interfaces"].push_back(json::parse(R"({"law": "contact", "nodes": [1],
+        "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}})"));
+    source["loads"].push_back({{"type", "motion"}, {"nodes", {1}}, {"axes", {2}}, {"velocity", {0, 0, -1}}});
+    auto [scene, integrator] = simulation_of(source);
+    const auto state = [&found = *scene.interfaces[0], &u = integrator.displacement()] {
+      return found.state_at(0, u);
+    };
+    std::vector<double> before = state();
+    const auto step_to_the_floor = [&] {
+      while (integrator.steps() < scene.steps) {
+        before = state();
+        integrator.step();
+      }
+    };
+    EXPECT_THROW(step_to_the_floor(), std::runtime_error);
+    EXPECT_NEAR(integrator.time(), 0.49, 0.011);  // of the last step that was made, one or two before
+    EXPECT_EQ(state(), before);
+  }
+}
+
 TEST(TurningObstacle, IsRefusedWithPointerFoundAndAllowed) {
   const auto with = [](const json& change, int dimension = 3) {
     json source = dropped(wheel(dimension == 2 ? "disc" : "sphere", 1.0), dimension, 0.3, 0.5);

@@ -81,6 +81,7 @@ class BlockWalk {
     if (step_.heat) take_heat();
     if (show_fault(outcome.sums)) find_fault(outcome.refusal);
     if (!contacts_in_row_) scatter();
+    if (!states_in_place()) scatter_states();
   }
 
  private:
@@ -187,9 +188,10 @@ class BlockWalk {
     for (std::ptrdiff_t i = 0; i < count_; ++i) room[i] = all[contact(i)];
     return room;
   }
-  // The same of the states.
+  // The same of the states. On a surface that turns, a copy of them turns: a law that refuses leaves none.
+  bool states_in_place() const { return contacts_in_row_ && !Turns; }
   double* states() {
-    if (contacts_in_row_) return at_.state.first(contact(0));
+    if (states_in_place()) return at_.state.first(contact(0));
     const std::size_t size = step_.law.info().state_size;
     if (!state_room_) state_room_ = std::make_unique_for_overwrite<double[]>(size * block_size);
     for (std::size_t c = 0; c < size; ++c)
@@ -209,7 +211,7 @@ class BlockWalk {
   ilaw_batch make_batch() {
     const ilaw_instance_info& info = step_.law.info();
     double* const state = states();
-    const std::int64_t state_stride = contacts_in_row_ ? at_.state.stride() : block_size;
+    const std::int64_t state_stride = states_in_place() ? at_.state.stride() : block_size;
     if constexpr (Turns) turn_states(state, state_stride);
     delassus_ = column(at_.delassus, delassus_room_.data());
     impulse_ = contacts_in_row_ ? &at_.impulse[contact(0) * D] : impulse_room_.data();
@@ -391,12 +393,13 @@ class BlockWalk {
   }
 
   void scatter() {
-    const std::size_t size = step_.law.info().state_size;
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       std::copy_n(impulse_ + D * i, D, &at_.impulse[contact(i) * D]);
       at_.status[contact(i)] = status_[i];
     }
-    for (std::size_t c = 0; c < size; ++c)
+  }
+  void scatter_states() {
+    for (std::size_t c = 0; c < step_.law.info().state_size; ++c)
       for (std::ptrdiff_t i = 0; i < count_; ++i) at_.state.at(contact(i), c) = state_in_room(i, c);
   }
 

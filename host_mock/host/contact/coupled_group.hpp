@@ -31,6 +31,8 @@ class CoupledGroup {
   // ---- before a solve ----
   void open(bool watches_inputs);
   void add(const CoupledContact& contact, const ContactArrays& arrays);
+  // A number of the state of the contact that was added last: a copy of the accepted one.
+  double& last_state(std::size_t number) { return state_[state_.size() - state_size_ + number]; }
   // Reads the parameters per node again, which changed since.
   void read_parameters(const ContactArrays& arrays);
   // Calls visit with each entry of the bodies: a node, which visit may replace by its place among the bodies

@@ -38,8 +38,6 @@ const ilaw_contacts& CoupledInterface::open(const StepView& step) {
   for (const std::int32_t contact : interface_.active()) {
     const auto k = static_cast<std::size_t>(contact);
     const auto [point, surface] = locate_contact(setup, contacts.node_index[k], step, obstacle.rates());
-    turn_axes(setup, interface_.axes_, interface_.dimension_, step,
-              [&](std::size_t number) -> double& { return contacts.state.at(k, number); });
     contacts.gap[k] = point.gap;
     contacts.vector(contacts.normal, contact) = point.normal;
     contacts.vector(contacts.impulse, contact).setZero();
@@ -53,6 +51,8 @@ const ilaw_contacts& CoupledInterface::open(const StepView& step) {
     const Vector after = obstacle.velocity() + surface.after,
                  before = obstacle.velocity_before() + surface.before;
     group_.add({contact, interface_.node_of(contact), point, after, before}, contacts);
+    turn_axes(setup, interface_.axes_, interface_.dimension_, step,
+              [&](std::size_t number) -> double& { return group_.last_state(number); });
   }
   return group_.close(obstacle.tangent(), step);
 }
@@ -140,15 +140,25 @@ Vector CoupledInterface::v_free_of(std::size_t place, const Dofs& v) const {
          interface_.velocity_of(contact, interface_.impulse(contact));
 }
 
+void CoupledInterface::check_results(double dt) const {
+  for (std::size_t i = 0; i < group_.count(); ++i) {
+    const std::int32_t contact = group_.contact(i);
+    const std::uint8_t status = group_.status(i);
+    Refusal refusal;
+    refusal.add_unknown(&status, &contact, 1);
+    interface_.check(refusal, dt);
+    if (const char* fault =
+            fault_of(group_.impulse(i).data(), interface_.dimension_, group_.energy(i), status))
+      interface_.check({ILAW_BAD_LIBRARY, 0, contact, 0, fault}, dt);
+  }
+}
+
 void CoupledInterface::accept(const StepView& step, const Dofs& v) {
   ContactArrays& contacts = interface_.contacts_;
   ContactSums& sums = interface_.sums_;
   std::size_t place = 0;
   for (const std::int32_t contact : interface_.active()) {
     const auto k = static_cast<std::size_t>(contact);
-    Refusal unknown;
-    unknown.add_unknown(&contacts.status[k], &contact, 1);
-    interface_.check(unknown, step.dt);
     ++sums.statuses[contacts.status[k]];
     sums.penetration = std::max(sums.penetration, -interface_.gap(contact));
     interface_.setup().counterpart->note_contact(contacts.node_index[k], contacts.status[k] != ILAW_FREE,
@@ -157,7 +167,6 @@ void CoupledInterface::accept(const StepView& step, const Dofs& v) {
     if (acts) accept_contact(step, v, place++);
   }
   interface_.total_amounts();
-  if (show_fault(sums)) find_fault(step.dt);
 }
 
 void CoupledInterface::accept_contact(const StepView& step, const Dofs& v, std::size_t place) {
@@ -185,13 +194,6 @@ void CoupledInterface::accept_contact(const StepView& step, const Dofs& v, std::
                                     v_free_of(place, v).data(), interface_.dimension_, step.dt);
   contacts.mark_touched(k, interface_.status(contact) != ILAW_FREE, in_reach || changed,
                         interface_.law_.may_skip_free());
-}
-
-void CoupledInterface::find_fault(double dt) const {
-  for (std::size_t i = 0; i < group_.count(); ++i)
-    if (const char* fault =
-            fault_of(group_.impulse(i).data(), interface_.dimension_, group_.energy(i), group_.status(i)))
-      interface_.check({ILAW_BAD_LIBRARY, 0, group_.contact(i), 0, fault}, dt);
 }
 
 }  // namespace ilaw::host

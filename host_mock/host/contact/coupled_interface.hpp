@@ -35,14 +35,16 @@ class CoupledInterface {
   [[noreturn]] void refuse_driven(std::size_t place) const;
   // Throws std::runtime_error where a motion drives a node against a law that cannot give way.
   void check_driven(const StepView& step, const Dofs& v) const;
-  // The step is done: its state becomes the state before the next.
+  // Throws where a law returned a status that is none, or an impossible result.
+  void check_results(double dt) const;
+  // The step is done: its state becomes the state before the next. All that the step before it left is
+  // written here alone, so that a step may be opened any number of times.
   void accept(const StepView& step, const Dofs& v);
 
  private:
   bool is_idle(std::int32_t contact) const;
   Vector v_free_of(std::size_t place, const Dofs& v) const;
   void accept_contact(const StepView& step, const Dofs& v, std::size_t place);
-  void find_fault(double dt) const;
 
   Interface& interface_;
   CoupledGroup group_;

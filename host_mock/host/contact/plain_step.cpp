@@ -53,8 +53,6 @@ void step_contact(const BlockStep& step, std::int32_t contact, int node, ChunkOu
 
   // Gap, normal, H, and the velocity of the surface.
   const auto [point, surface] = locate_contact(step.setup, at.node_index[k], step.step, obstacle.rates());
-  turn_axes(step.setup, step.axes, d, step.step,
-            [&](std::size_t number) -> double& { return at.state.at(k, number); });
   if (!at.point.empty()) {
     at.point[k] = point;
     at.delassus[k] = point.delassus(step.inverse_mass, d, node);

@@ -163,8 +163,11 @@ std::string CoupledStep::explain() const {
       worst.interface().name().c_str(), report_.energy_error, report_.message);
 }
 
-void CoupledStep::check_driven(const StepView& step, const Dofs& v) const {
-  for (const CoupledInterface& interface : interfaces_) interface.check_driven(step, v);
+void CoupledStep::check_results(const StepView& step, const Dofs& v) const {
+  for (const CoupledInterface& interface : interfaces_) {
+    interface.check_driven(step, v);
+    interface.check_results(step.dt);
+  }
 }
 
 void CoupledStep::accept(const StepView& step, const Dofs& v) {

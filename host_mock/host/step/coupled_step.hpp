@@ -33,8 +33,9 @@ class CoupledStep {
   // Why contacts of the last solve have no solution, or it is not found; empty where they are many, and
   // merely not solved yet.
   std::string explain() const;
-  // Throws where a motion drives a node against a law that cannot give way.
-  void check_driven(const StepView& step, const Dofs& v) const;
+  // Throws where a motion drives a node against a law that cannot give way, or a law's results are
+  // impossible.
+  void check_results(const StepView& step, const Dofs& v) const;
   // The step is done: states are accepted.
   void accept(const StepView& step, const Dofs& v);
 

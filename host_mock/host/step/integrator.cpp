@@ -231,14 +231,15 @@ void Integrator::add_reactions(const StepView& step) try {
   throw;
 }
 
-// Incompatible laws end the run before their states are accepted.
+// What ends the run does so before states are accepted.
 void Integrator::add_coupled_reactions(const StepView& step) {
   const ilaw_coupled_report& solution = coupled_->solve(step, contact_inverse_mass(), v_);
-  coupled_->check_driven(step, v_);
+  coupled_->check_results(step, v_);
   if (solution.other_law || accounts_.is_wrong(model_, solution, v_before_))
     if (const std::string why = coupled_->explain(); !why.empty()) throw std::runtime_error(why);
-  accounts_.add_solution(solution, coupled_->tolerance());
+  check_motion(largest_speed(v_, model_.dimension()), step.time);
   coupled_->accept(step, v_);
+  accounts_.add_solution(solution, coupled_->tolerance());
 }
 
 void Integrator::take_heat() {
