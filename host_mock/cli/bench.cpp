@@ -4,7 +4,7 @@
 
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
-#include "base/running_law.hpp"
+#include "base/running_call.hpp"
 #include "bench/bench_law.hpp"
 #include "bench/measure.hpp"
 #include "cli/guard.hpp"
@@ -36,7 +36,7 @@ struct BenchOptions {
 class Libraries {
  public:
   const ilaw::library& open(const std::string& name_or_path) {
-    const RunningLaw running("", name_or_path.c_str(), nullptr);
+    const RunningCall running({"", name_or_path.c_str()});
     return opened_.try_emplace(name_or_path, name_or_path).first->second;
   }
 
@@ -135,7 +135,7 @@ std::vector<BenchResult> measure_all(const std::vector<BenchCase>& cases, const 
 
 int bench(const BenchOptions& options) {
   warn_of_search_path();
-  guard_against_laws();
+  name_crashes();
   Libraries libraries;
   const std::vector<BenchCase> cases = cases_of(options, libraries);
   for (const BenchCase& one : cases)

@@ -35,6 +35,7 @@ Sweep SweepOptions::over(Sweep said) const {
   said.levels = levels.value_or(said.levels);
   said.factor = factor.value_or(said.factor);
   if (refine) said.with_mesh = *refine == "mesh";
+  said.threads = threads;
   return said;
 }
 
@@ -45,6 +46,7 @@ void add_sweep(CLI::App& command, SweepOptions& options, const std::string& leve
       ->check(number_from(1.01, 10.0));
   command.add_option("--refine", options.refine, "time, or mesh (with the time step)")
       ->check(CLI::IsMember({"time", "mesh"}));
+  add_threads(command, options.threads);
 }
 
 void remove_pictures(const std::filesystem::path& folder) {

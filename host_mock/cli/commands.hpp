@@ -42,10 +42,11 @@ struct SweepOptions {
   std::optional<int> levels;
   std::optional<double> factor;
   std::optional<std::string> refine;  // "time" or "mesh"
+  int threads = 1;                    // of each run
 
   Sweep over(Sweep said) const;
 };
-// The options --levels, --factor and --refine.
+// The options --levels, --factor, --refine and --threads.
 void add_sweep(CLI::App& command, SweepOptions& options, const std::string& levels,
                const CLI::Range& allowed);
 

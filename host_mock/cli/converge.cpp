@@ -19,7 +19,6 @@ using nlohmann::json;
 struct ConvergeOptions {
   std::filesystem::path scene, folder;
   SweepOptions sweep;
-  int threads = 1;
 };
 
 // A number in ten columns.
@@ -43,8 +42,9 @@ void print_table(const ErrorTable& table) {
 }
 
 int converge(const ConvergeOptions& options) {
-  set_threads(options.threads);
-  guard_against_laws();
+  set_threads(1);  // those of the runs are made in their processes
+  name_crashes();
+  const std::filesystem::path folder = std::filesystem::absolute(options.folder).lexically_normal();
   const json source = read_scene_source(options.scene);
   const Sweep sweep = options.sweep.over(read_sweep(source.value("converge", json::object())));
   const std::string title = source.value("title", options.scene.stem().string());
@@ -67,7 +67,6 @@ void add_converge(CLI::App& app, int& code) {
   command->add_option("--out", options->folder, "Folder for converge.csv and .json, which `ilaw plot` draws")
       ->required();
   add_sweep(*command, options->sweep, "Number of runs, the scene's own included", CLI::Range(2, 12));
-  add_threads(*command, options->threads);
   command->footer("Example: ilaw converge host_mock/scenes/bar_on_wall.json --out results");
   command->callback(
       [options, &code] { code = in_scene(options->scene, [&] { return converge(*options); }); });

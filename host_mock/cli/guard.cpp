@@ -3,26 +3,24 @@
 #include "cli/guard.hpp"
 
 #include "base/exit_code.hpp"
-#include "base/running_law.hpp"
-
-#include <ilaw/ilaw.h>
+#include "base/running_call.hpp"
+#include "base/stop_request.hpp"
 
 #include <signal.h>
 #include <string.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <array>
-#include <csignal>
+#include <cmath>
+#include <cstdint>
 #include <cstdlib>
 
 namespace ilaw::host {
 namespace {
 
 constexpr std::array crashes{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGSYS};
+constexpr std::array interrupts{SIGINT, SIGTERM, SIGHUP};
 std::array<struct sigaction, crashes.size()> handlers_before;
-
-volatile std::sig_atomic_t interrupts = 0, is_ending = 0;
 
 // A line without an allocation, cut where it is too long.
 class Line {
@@ -49,43 +47,30 @@ class Line {
   std::size_t size_ = 0;
 };
 
-[[noreturn]] void end_now(int code) {
-  for (;;) syscall(SYS_exit_group, code);
-}
-
-[[noreturn]] void end_by(const RunningLaw& law, const char* did, const char* how) {
+// Does nothing where this thread runs no law.
+void end_in_call(const char* did, const char* how) {
+  const LibraryCall* call = RunningCall::current();
+  if (!call) return;
   Line line;
-  line << "ilaw: law '" << law.law() << "'";
-  if (law.interface()) line << " of interface '" << law.interface() << "'";
-  line << " (library " << law.library() << ") " << did << how;
-  if (RunningLaw::step() > 0) line << " in step " << RunningLaw::step();
+  line << "ilaw: law '" << call->law << "'";
+  if (call->interface) line << " of interface '" << call->interface << "'";
+  line << " (library " << call->library << ") " << did << how;
+  if (call->step > 0.0 && call->time > 0.0) line << " in step " << std::llround(call->time / call->step);
   line.write_out();
-  end_now(exit_failed);
+  _exit(exit_failed);
 }
 
 void on_crash(int signal) {
-  if (const RunningLaw* law = RunningLaw::current()) end_by(*law, "crashed: ", sigdescr_np(signal));
+  end_in_call("crashed: ", sigdescr_np(signal));
   for (std::size_t k = 0; k < crashes.size(); ++k) sigaction(crashes[k], &handlers_before[k], nullptr);
   raise(signal);
 }
 
-void on_exit() {
-  if (is_ending) return;
-  if (const RunningLaw* law = RunningLaw::current()) end_by(*law, "ended the program", "");
-  Line line;
-  (line << "ilaw: code of a library ended the program").write_out();
-  end_now(exit_failed);
-}
+void on_exit() { end_in_call("ended the program", ""); }
 
-// Whoever asks twice is given a second to see the step end.
-void on_interrupt(int /*signal*/) {
-  interrupts = interrupts + 1;
-  if (interrupts > 1) alarm(1);
-}
-
-void on_alarm(int /*signal*/) {
-  if (const RunningLaw* law = RunningLaw::current()) end_by(*law, "does not come back", "");
-  alarm(1);
+void on_interrupt(int signal) {
+  stop_signal = signal;
+  for (const int each : interrupts) std::signal(each, SIG_DFL);
 }
 
 void handle(int signal, void (*handler)(int), int flags) {
@@ -106,35 +91,28 @@ void give_stack() {
 
 }  // namespace
 
-void guard_against_laws() {
-#pragma omp parallel
+void name_crashes() {
   give_stack();
   for (std::size_t k = 0; k < crashes.size(); ++k) {
     sigaction(crashes[k], nullptr, &handlers_before[k]);
     handle(crashes[k], on_crash, SA_ONSTACK);
   }
   std::atexit(on_exit);
-  std::at_quick_exit(on_exit);
+}
+
+void name_crashes_of_threads() {
+#pragma omp parallel
+  give_stack();
 }
 
 void catch_interrupts() {
-  for (const int signal : {SIGINT, SIGTERM}) handle(signal, on_interrupt, SA_RESTART);
-  handle(SIGALRM, on_alarm, SA_RESTART);
+  for (const int signal : interrupts) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (signal != SIGHUP || before.sa_handler != SIG_IGN) handle(signal, on_interrupt, SA_RESTART);
+  }
   handle(SIGXFSZ, SIG_IGN, 0);  // a file that may not grow is an error to report, not one to die of
   handle(SIGPIPE, SIG_IGN, 0);  // and so is a reader who has left
 }
 
-bool stop_requested() { return interrupts > 0; }
-
-void end_guard() { is_ending = 1; }
-
 }  // namespace ilaw::host
-
-// In place of the C library's (exported by CMakeLists.txt): a law that calls them skips what atexit
-// registered.
-extern "C" ILAW_EXPORT void _exit(int code) {
-  using ilaw::host::RunningLaw;
-  if (const RunningLaw* law = RunningLaw::current()) ilaw::host::end_by(*law, "ended the program", "");
-  ilaw::host::end_now(code);
-}
-extern "C" ILAW_EXPORT void _Exit(int code) { _exit(code); }

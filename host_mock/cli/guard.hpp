@@ -1,17 +1,16 @@
-// guard.hpp - what becomes of a run where a signal comes, or a law ends the program: it is named,
-// and the exit code is not 0.
+// guard.hpp - signals: a crash in a law's code names the call, and an interrupt ends a run at its next step.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 namespace ilaw::host {
 
-// From here on a law that crashes, aborts or calls exit is named. After set_threads.
-void guard_against_laws();
-// Ctrl-C and kill end the run at the end of its step, with whole files. Where a law does not come
-// back from it, a second one ends the program.
+// From here on a law that crashes, aborts or calls exit on this thread is named, and the exit code is 1.
+void name_crashes();
+// The same, by overflow of their stacks, too, on the threads of OpenMP, which are made here if there are
+// none.
+void name_crashes_of_threads();
+// From here on Ctrl-C, SIGTERM, and SIGHUP unless it is ignored, make stop_requested() true; a second one
+// ends the program at once. Files under their final names are whole at any time.
 void catch_interrupts();
-bool stop_requested();
-// The program ends by itself from here on.
-void end_guard();
 
 }  // namespace ilaw::host

@@ -5,7 +5,6 @@
 #include "base/words.hpp"
 #include "check/check.hpp"
 #include "cli/commands.hpp"
-#include "cli/guard.hpp"
 #include "cli/terminal.hpp"
 
 #include <ilaw/loader.hpp>
@@ -13,8 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include <exception>
-#include <new>
-#include <stdexcept>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -38,7 +36,7 @@ std::string usage_message(const CLI::App* app, const CLI::Error& error) {
 }
 
 int complain_of(const std::exception& error, ilaw::host::ExitCode code) {
-  ilaw::host::complain(error.what());
+  ilaw::host::complain(ilaw::host::message_of(error));
   return code;
 }
 
@@ -69,8 +67,8 @@ int run_command(int argc, char** argv) {
     return complain_of(error, exit_bad_input);
   } catch (const ilaw::check::UsageError& error) {
     return complain_of(error, exit_bad_input);
-  } catch (const std::bad_alloc&) {
-    return complain_of(std::runtime_error("out of memory"), exit_failed);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return complain_of(error, error.path1().empty() ? exit_bad_input : exit_failed);
   } catch (const std::exception& error) {
     return complain_of(error, exit_failed);
   }
@@ -81,7 +79,5 @@ int run_command(int argc, char** argv) {
 int main(int argc, char** argv) {
   ilaw::host::open_standard_streams();
   if (!ilaw::host::knows_instruction_set()) return ilaw::host::exit_bad_input;
-  const int code = ilaw::host::after_output(run_command(argc, argv));
-  ilaw::host::end_guard();
-  return code;
+  return ilaw::host::after_output(run_command(argc, argv));
 }

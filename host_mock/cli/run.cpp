@@ -7,6 +7,7 @@
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "base/large_pages.hpp"
+#include "base/stop_request.hpp"
 #include "base/words.hpp"
 #include "cli/guard.hpp"
 #include "cli/terminal.hpp"
@@ -79,11 +80,14 @@ class Run {
       if (options_.checkpoint_every > 0 && checkpoint_step_ != integrator_.steps()) write_checkpoint_now();
       history_->commit();
       if (events_) events_->commit();
+    } catch (const Interrupted&) {
+      record.interrupted = true;
+      keep_rows();
     } catch (const Diverged& failure) {
       keep_what_there_is(failure.what());
       keep_diverged_state();
     } catch (const std::exception& failure) {
-      keep_what_there_is(failure.what());
+      keep_what_there_is(message_of(failure));
     }
   }
 
@@ -97,7 +101,7 @@ class Run {
     try {
       write_summary(scene_, integrator_, record, options_.folder);
     } catch (const std::exception& failure) {
-      if (record.failure.empty()) record.failure = failure.what();
+      if (record.failure.empty()) record.failure = message_of(failure);
     }
   }
 
@@ -180,8 +184,12 @@ class Run {
                record.told);
   }
 
-  void keep_what_there_is(const char* failure) {
+  void keep_what_there_is(const std::string& failure) {
     record.failure = failure;
+    keep_rows();
+  }
+
+  void keep_rows() {
     history_->keep_rows();
     if (events_) events_->keep_rows();
   }
@@ -259,7 +267,7 @@ std::unique_ptr<Run> start_or_explain(Scene& scene, const RunOptions& options) {
   } catch (const WriteError&) {
     throw;
   } catch (const std::runtime_error& error) {
-    complain(error.what());
+    complain(message_of(error));
   }
   return nullptr;
 }
@@ -289,11 +297,12 @@ int report(const Scene& scene, const Integrator& integrator, const RunRecord& re
 int run(const RunOptions& options) {
   place_arrays_one_after_another();
   set_threads(options.threads);
-  guard_against_laws();
+  name_crashes();
   warn_of_search_path();
   Scene scene = in_scene(options.scene, [&] { return read_scene(options.scene); });
   for (const nlohmann::json& mesh : scene.meshes) std::printf("%s\n", printable(line_of_mesh(mesh)).c_str());
-  std::fflush(stdout);  // before what goes to stderr
+  std::fflush(stdout);        // before what goes to stderr
+  name_crashes_of_threads();  // after reading: readers of meshes are processes, which threads must not start
   return run_scene(scene, options);
 }
 
@@ -301,10 +310,10 @@ int run(const RunOptions& options) {
 
 int run_scene(Scene& scene, const RunOptions& options) {
   const double start = clock_seconds(CLOCK_MONOTONIC);
+  catch_interrupts();
   // The folder of a run to resume is there already.
   std::optional<HeldFolder> held;
   if (!options.resume || std::filesystem::is_directory(options.folder)) held.emplace(options.folder);
-  catch_interrupts();
   const std::unique_ptr<Run> run = start_or_explain(scene, options);
   if (!run) return exit_bad_input;
   const auto warn = [&](const std::vector<std::string>& warnings) {

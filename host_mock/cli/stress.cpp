@@ -41,7 +41,7 @@ int run_stress(const StressSetup& setup) {
   std::optional<HeldFolder> kept, written;
   if (!setup.keep.empty()) kept.emplace(setup.keep);
   if (!setup.write.empty()) written.emplace(setup.write);
-  guard_against_laws();
+  name_crashes();
   const StressReport report = [&] {
     Progress progress(0, setup.scenes);
     return stress(setup, [&](std::int64_t done) { progress.show(done); });

@@ -28,7 +28,6 @@ struct StudyOptions {
   std::vector<std::string> laws;
   SweepOptions sweep;
   std::optional<int> repetitions;  // what a scene says under "study", unless given
-  int threads = 1;
 };
 
 StudySetup setup_of(json& source, const StudyOptions& options) {
@@ -93,8 +92,8 @@ int study_scene(const std::filesystem::path& file, const std::filesystem::path& 
 }
 
 int study(const StudyOptions& options) {
-  set_threads(options.threads);
-  guard_against_laws();
+  set_threads(1);  // those of the runs are made in their processes
+  name_crashes();
   const std::filesystem::path folder = std::filesystem::absolute(options.folder).lexically_normal();
   const auto study_in = [&](const std::filesystem::path& scene, const std::filesystem::path& own) {
     return in_scene(scene, [&] { return study_scene(scene, own, options); });
@@ -135,7 +134,6 @@ void add_study(CLI::App& app, int& code) {
       ->add_option("--repetitions", options->repetitions,
                    "Repetitions of each run, for the median of its times")
       ->check(CLI::Range(1, 1000));
-  add_threads(*command, options->threads);
   command->footer(
       "Example: ilaw study host_mock/scenes/bar_on_wall.json --out results\n"
       "         ilaw study scene.json --out results --law contact --law 'penalty:{\"stiffness\": 1e6}'");

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/run.hpp"
 
+#include "base/child_process.hpp"
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "base/scene_error.hpp"
+#include "base/stop_request.hpp"
+#include "base/words.hpp"
 #include "cli/commands.hpp"
 #include "cli/guard.hpp"
 #include "cli/run_table.hpp"
@@ -14,7 +17,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
-#include <mutex>
 #include <set>
 
 namespace ilaw::host {
@@ -93,7 +95,7 @@ void set(json& source, const json::json_pointer& pointer, const json& value) {
 struct Variant {
   std::string name;
   std::vector<std::size_t> choice;  // by setting
-  int exit_code = exit_done;
+  int exit_code = exit_failed;      // until it has run
 };
 
 std::string folder_name(const std::string& text) {
@@ -147,27 +149,39 @@ void write_table(const std::vector<Variant>& variants, const std::filesystem::pa
   file.commit();
 }
 
-// One thread each; libraries are opened by one of them at a time.
+// Runs one in this process.
+int run_variant(const Variant& variant, const std::vector<Setting>& settings, const json& source,
+                const RunOptions& options) {
+  RunOptions own = options;
+  own.folder = options.folder / variant.name;
+  own.shows_progress = false;
+  own.tells_of_start = false;  // bars of several runs would overwrite each other
+  try {
+    Scene scene = scene_of(variant, settings, source, options.scene);
+    return run_scene(scene, own);
+  } catch (const std::exception& error) {
+    complain(variant.name + ": " + message_of(error));
+  }
+  return exit_failed;
+}
+
+// A process each, options.threads at a time: a law that crashes takes no other run with it. At an interrupt
+// those that run end at their next step, and no other is started.
 void run_all(std::vector<Variant>& variants, const std::vector<Setting>& settings, const json& source,
              const RunOptions& options) {
-  std::mutex reading;
-  const auto count = static_cast<std::ptrdiff_t>(variants.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::ptrdiff_t k = 0; k < count; ++k) {
-    Variant& variant = variants[static_cast<std::size_t>(k)];
-    RunOptions own = options;
-    own.folder = options.folder / variant.name;
-    own.shows_progress = false;
-    own.tells_of_start = false;  // bars of several runs would overwrite each other
-    try {
-      std::unique_lock lock(reading);
-      Scene scene = scene_of(variant, settings, source, options.scene);
-      lock.unlock();
-      variant.exit_code = run_scene(scene, own);
-    } catch (const std::exception& error) {
-      complain(variant.name + ": " + error.what());
-      variant.exit_code = exit_failed;
+  Processes running;
+  std::size_t next = 0;
+  while (running.count() > 0 || (next < variants.size() && !stop_requested())) {
+    if (next < variants.size() && !stop_requested() &&
+        running.count() < static_cast<std::size_t>(options.threads)) {
+      const Variant& variant = variants[next];
+      running.start(next++, [&] { return run_variant(variant, settings, source, options); });
+      continue;
     }
+    const Processes::Ended ended = running.wait();
+    Variant& variant = variants[ended.number];
+    variant.exit_code = ended.code;
+    if (!ended.crash.empty()) complain(variant.name + ": its process " + ended.crash);
   }
 }
 
@@ -178,7 +192,8 @@ int sweep(const RunOptions& options, const std::vector<std::string>& texts) {
   std::vector<Variant> variants;
   json source;
   std::string name;
-  guard_against_laws();
+  name_crashes();
+  set_threads(1);  // one in each process; none here, which starts processes
   warn_of_search_path();
   try {
     settings = parse_settings(texts);
@@ -192,15 +207,15 @@ int sweep(const RunOptions& options, const std::vector<std::string>& texts) {
     throw InputError(options.scene.string() + ": " + (name.empty() ? name : name + ": ") + error.what() +
                      "; nothing was run");
   }
+  catch_interrupts();
   const HeldFolder held(options.folder);
   remove_pictures(options.folder);  // of an earlier sweep
-  set_threads(options.threads);
   run_all(variants, settings, source, options);
   write_table(variants, options.folder);
   const auto failed =
       std::count_if(variants.begin(), variants.end(), [](const Variant& one) { return one.exit_code != 0; });
-  std::printf("%zu runs, %td failed; their summaries in %s\n", variants.size(), failed,
-              (options.folder / "sweep.csv").c_str());
+  std::printf("%zu runs, %td failed%s; their summaries in %s\n", variants.size(), failed,
+              stop_requested() ? " or interrupted" : "", (options.folder / "sweep.csv").c_str());
   return failed == 0 ? exit_done : exit_failed;
 }
 

@@ -93,15 +93,11 @@ std::int32_t evaluate(const ilaw_instance*, const ilaw_batch* batch, ilaw_report
       if (batch->energy.values)
         batch->energy.values[node * batch->energy.node_stride + k * batch->energy.component_stride] = 0.0;
   }
-  if (breaks("v_free")) const_cast<double*>(batch->v_free.values)[0] = 7.0;
-  if (breaks("gap")) const_cast<double*>(batch->gap.values)[0] = 7.0;
   if (batch->time < 2.9) return ILAW_OK;  // the third step
   if (breaks("throw")) throw std::runtime_error("what it threw");
   if (breaks("throw_number")) throw 3;
   if (breaks("abort")) std::abort();
   if (breaks("exit")) std::exit(0);
-  if (breaks("exit_at_once")) _exit(0);
-  if (breaks("quick_exit")) std::quick_exit(0);
   // Read at run time, so that the compiler does not see through it.
   static int* volatile nowhere = reinterpret_cast<int*>(8);
   if (breaks("crash")) *nowhere = 1;

@@ -236,8 +236,8 @@ TEST(Program, RemovesTheFieldsOfAnEarlierRun) {
 
 class Stopped : public ::testing::TestWithParam<int> {};
 
-// Ctrl-C and kill end the run at the end of a step, with whole files that say so. No progress bar without a
-// terminal.
+// Ctrl-C, kill and the end of a terminal end the run at the end of a step, with whole files that say so. No
+// progress bar without a terminal.
 TEST_P(Stopped, LeavesWholeFiles) {
   const auto folder = fresh_folder();
   json scene = shipped("bouncing_ball");
@@ -269,8 +269,23 @@ TEST_P(Stopped, LeavesWholeFiles) {
   EXPECT_THAT(messages, Not(HasSubstr("\r")));
 }
 
-INSTANTIATE_TEST_SUITE_P(Program, Stopped, ::testing::Values(SIGINT, SIGTERM),
+INSTANTIATE_TEST_SUITE_P(Program, Stopped, ::testing::Values(SIGINT, SIGTERM, SIGHUP),
                          [](const auto& drawn) { return std::string(sigabbrev_np(drawn.param)); });
+
+// As nohup starts it.
+TEST(Program, GoesOnAtAHangUpThatIsIgnored) {
+  const auto folder = fresh_folder();
+  std::signal(SIGHUP, SIG_IGN);
+  const pid_t child = start_program(
+      {"run", written(shipped("bouncing_ball"), folder), "--out", folder.string()}, folder / "messages");
+  std::signal(SIGHUP, SIG_DFL);
+  int status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    kill(child, SIGHUP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(WEXITSTATUS(status), 0) << text_of(folder / "messages");
+}
 
 // ---- progress -------------------------------------------------------------------------------------------
 

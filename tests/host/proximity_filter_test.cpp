@@ -1,9 +1,12 @@
 // Contacts that cannot be reached are left out, which changes no bit: the same as when all are active.
 #include "host_runner.hpp"
 
+#include "base/parallel.hpp"
+
 #include <omp.h>
 
 #include <cstring>
+#include <new>
 
 namespace ilaw::host::testing {
 namespace {
@@ -285,6 +288,20 @@ TEST(ProximityFilter, KeepsTheOrderOfSharedNodes) {
     skipped += expect_same_bits(scene).skipped;
   }
   EXPECT_GT(skipped, 1000);
+}
+
+// The last chunk is a worker's.
+TEST(Parallel, ThrowsHereWhatAWorkerThrows) {
+  omp_set_num_threads(2);
+  std::vector<int> done(8, 0);
+  EXPECT_THROW(for_each_chunk(8, 1,
+                              [&](std::ptrdiff_t c, auto, auto) {
+                                if (c == 7) throw std::bad_alloc();
+                                done[static_cast<std::size_t>(c)] = 1;
+                              }),
+               std::bad_alloc);
+  omp_set_num_threads(1);
+  EXPECT_EQ(std::count(done.begin(), done.end(), 1), 7);
 }
 
 }  // namespace

@@ -1,7 +1,12 @@
 // Several runs side by side: sweeps, tables, pictures; and the pictures of many nodes.
 #include "host_runner.hpp"
+#include "mesh_writer.hpp"
 
 #include "base/csv.hpp"
+
+#include <chrono>
+#include <csignal>
+#include <thread>
 
 namespace ilaw::host::testing {
 namespace {
@@ -28,6 +33,40 @@ json sliding() {
     "interfaces": [{"name": "floor", "law": "coulomb", "nodes": "all", "parameters": {"friction": 0.5},
       "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}}],
     "output": {"watch": [0], "forces": ["floor"], "every": 10}})");
+}
+
+// Readers of meshes are processes, and so are the runs.
+TEST(Sweep, ReadsMeshesInEachOfItsProcesses) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "box.vtu") << box_mesh({1, 1, 1}, {4, 4, 1}, false).vtu();
+  const json scene = json::parse(R"({"model": {"type": "solids", "meshes": [{"name": "b", "file": "box.vtu",
+      "material": {"type": "linear", "young": 1e6, "poisson": 0.3, "density": 1000}}]},
+    "time": {"cfl": 0.9, "end": 0.02}, "interfaces": [{"law": "coulomb", "nodes": "all",
+      "parameters": {"friction": 0.3}, "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})");
+  for (int k = 0; k < 5; ++k) {
+    const Outcome outcome = run_scene(scene, folder, "--set /time/end=0.02,0.03,0.04,0.05,0.06 --threads 2");
+    EXPECT_THAT(outcome, Exits(0, HasSubstr("5 runs, 0 failed; ")));
+  }
+}
+
+// Runs end at their next step, with results, and no other is started.
+TEST(Sweep, EndsAtAnInterrupt) {
+  const auto folder = fresh_folder();
+  json scene = sliding();
+  scene["time"]["end"] = 1e6;
+  const pid_t child = start_program({"run", written(scene, folder), "--out", folder.string(), "--threads",
+                                     "2", "--set", "/model/points/0/mass=1,2,3"},
+                                    folder / "messages");
+  for (int k = 0; k < 5000 && !fs::exists(folder / "mass=2" / "history.csv.partial"); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  kill(child, SIGTERM);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 1) << text_of(folder / "messages");
+  for (const std::string name : {"mass=1", "mass=2"})
+    EXPECT_TRUE(json_of(folder / name / "summary.json")["interrupted"]) << name;
+  EXPECT_FALSE(fs::exists(folder / "mass=3"));
+  EXPECT_EQ(rows_of(text_of(folder / "sweep.csv")).size(), 3U);
 }
 
 TEST(Sweep, RunsEachValueAndGathersTheSummaries) {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/child_process.hpp"
 
+#include "base/scene_error.hpp"
+#include "base/stop_request.hpp"
+
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,7 +14,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <stdexcept>
+#include <new>
 
 namespace ilaw::host {
 namespace {
@@ -33,13 +37,28 @@ void limit(int resource, unsigned long long amount) {
   setrlimit(static_cast<decltype(RLIMIT_AS)>(resource), &given);
 }
 
-[[noreturn]] void answer(int pipe, const std::function<std::string()>& work) {
-  const std::string text = work();
+enum Outcome : char { returned = '+', out_of_memory = 'm', scene_error = 's', other_error = '-' };
+
+// Its first letter says what became of the work.
+std::string answer_of(const std::function<std::string()>& work) {
+  try {
+    return char{returned} + work();
+  } catch (const std::bad_alloc&) {
+    return {out_of_memory};
+  } catch (const SceneError& error) {
+    return char{scene_error} + std::string(error.what());
+  } catch (const std::exception& error) {
+    return char{other_error} + std::string(error.what());
+  }
+}
+
+[[noreturn]] void answer(int pipe, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t written = write(pipe, text.data() + done, text.size() - done);
     if (written <= 0) _exit(1);
     done += static_cast<std::size_t>(written);
   }
+  std::fflush(nullptr);
   _exit(0);
 }
 
@@ -54,35 +73,77 @@ std::string read_all(int pipe) {
   }
 }
 
-}  // namespace
-
-bool ChildResult::is_complete() const { return WIFEXITED(status) && WEXITSTATUS(status) == 0; }
-
-std::string ChildResult::reason(unsigned max_seconds) const {
+std::string reason_of(int status, unsigned max_seconds) {
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM)
     return "did not end within " + std::to_string(max_seconds) + " s";
   if (WIFSIGNALED(status)) return std::string("crashed: ") + sigdescr_np(WTERMSIG(status));
   return "ended the program with code " + std::to_string(WEXITSTATUS(status));
 }
 
-ChildResult run_in_child(const std::function<std::string()>& work, unsigned max_seconds,
-                         unsigned long long max_bytes) {
-  std::array<int, 2> ends{};
+// signal: what the child gets where this process ends before it.
+pid_t start_child(int signal) {
   std::fflush(nullptr);  // or the child would print what is still to be printed
-  const pid_t child = pipe(ends.data()) == 0 ? fork() : -1;
+  const pid_t child = fork();
   if (child < 0) throw std::runtime_error(std::string("no process can be started: ") + strerror(errno));
+  if (child == 0) prctl(PR_SET_PDEATHSIG, signal);
+  return child;
+}
+
+}  // namespace
+
+std::string result_in_process(const std::function<std::string()>& work, unsigned max_seconds,
+                              unsigned long long max_bytes) {
+  std::array<int, 2> ends{};
+  if (pipe(ends.data()) != 0)
+    throw std::runtime_error(std::string("no process can be started: ") + strerror(errno));
+  const pid_t child = start_child(SIGKILL);
   if (child == 0) {
     close(ends[0]);
+    std::signal(SIGALRM, SIG_DFL);
     alarm(max_seconds);  // code that never ends
     limit(RLIMIT_CORE, 0);
     if (max_bytes > 0 && can_limit_memory) limit(RLIMIT_AS, max_bytes);
-    answer(ends[1], work);
+    answer(ends[1], answer_of(work));
   }
   close(ends[1]);
-  ChildResult result{read_all(ends[0])};
+  const std::string text = read_all(ends[0]);
   close(ends[0]);
-  while (waitpid(child, &result.status, 0) < 0 && errno == EINTR) continue;
-  return result;
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || text.empty())
+    throw ProcessEnded(reason_of(status, max_seconds));
+  if (text[0] == out_of_memory) throw std::bad_alloc();
+  if (text[0] == scene_error) throw SceneError(text.substr(1));
+  if (text[0] == other_error) throw std::runtime_error(text.substr(1));
+  return text.substr(1);
+}
+
+// In a process group of its own: Ctrl-C reaches this process alone, which passes it on once.
+void Processes::start(std::size_t number, const std::function<int()>& work) {
+  const pid_t child = start_child(SIGTERM);
+  if (child == 0) {
+    setpgid(0, 0);
+    const int code = work();
+    _exit(std::fflush(nullptr) == 0 ? code : 1);
+  }
+  running_.emplace(child, number);
+}
+
+// A signal may come just before a call of waitpid that blocks: it is asked again and again.
+Processes::Ended Processes::wait() {
+  constexpr useconds_t microseconds = 1000;
+  for (;; usleep(microseconds)) {
+    if (stop_requested() && !has_passed_on_)
+      for (const auto& [child, number] : running_) kill(child, SIGTERM);
+    has_passed_on_ = stop_requested();
+    int status = 0;
+    const auto found = running_.find(waitpid(-1, &status, WNOHANG));
+    if (found == running_.end()) continue;
+    const std::size_t number = found->second;
+    running_.erase(found);
+    if (WIFEXITED(status)) return {number, WEXITSTATUS(status), ""};
+    return {number, 1, reason_of(status, 0)};
+  }
 }
 
 }  // namespace ilaw::host

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <exception>
 
 namespace ilaw::host {
 
@@ -14,9 +15,9 @@ constexpr std::ptrdiff_t chunks_of(std::ptrdiff_t count, std::ptrdiff_t chunk) {
   return (count + chunk - 1) / chunk;
 }
 
-// Calls f(c, first, end) for the items of each chunk c. f must not throw. A single chunk, and all
-// of them where there is one thread, are a plain loop: a parallel region costs 300 ns, and one
-// whose `if` is false as well.
+// Calls f(c, first, end) for the items of each chunk c; what f throws first on any thread is thrown here. A
+// single chunk, and all of them where there is one thread, are a plain loop: a parallel region costs 300 ns,
+// and one whose `if` is false as well.
 template <class F>
 void for_each_chunk(std::ptrdiff_t count, std::ptrdiff_t chunk, F f) {
   const std::ptrdiff_t chunks = chunks_of(count, chunk);
@@ -25,8 +26,15 @@ void for_each_chunk(std::ptrdiff_t count, std::ptrdiff_t chunk, F f) {
     for (std::ptrdiff_t c = 0; c < chunks; ++c) run(c);
     return;
   }
+  std::exception_ptr failure;
 #pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t c = 0; c < chunks; ++c) run(c);
+  for (std::ptrdiff_t c = 0; c < chunks; ++c) try {
+      run(c);
+    } catch (...) {
+#pragma omp critical(ilaw_failure)
+      if (!failure) failure = std::current_exception();
+    }
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace ilaw::host

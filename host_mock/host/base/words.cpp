@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
+#include <filesystem>
+#include <new>
 
 namespace ilaw::host {
 namespace {
@@ -24,6 +26,14 @@ std::size_t edits(const std::string& a, const std::string& b) {
 }
 
 }  // namespace
+
+std::string message_of(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error)) return "out of memory";
+  const auto* const failed = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
+  if (!failed) return error.what();
+  if (failed->path1().empty()) return "found an empty name, expected that of a file or a folder";
+  return failed->path1().string() + ": " + failed->code().message();
+}
 
 std::string formatted(const char* format, ...) {
   std::va_list values, again;

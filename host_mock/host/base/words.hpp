@@ -1,7 +1,8 @@
-// words.hpp - numbers and names in messages: those that are allowed, and the one that was meant.
+// words.hpp - numbers, names and exceptions in messages.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,9 @@ namespace ilaw::host {
 
 // A text as of printf, however long.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
+
+// One sentence, also of what the standard library throws where memory or a file is missing.
+std::string message_of(const std::exception& error);
 
 // A number in so many digits at most.
 std::string in_digits(double value, int digits);

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -275,11 +274,8 @@ class BlockWalk {
   // ---- the law, and what follows from it ----
 
   bool evaluate(const ilaw_batch& batch, ChunkOutcome& outcome) {
-    std::optional<InputCopy> inputs;
-    if (step_.is_watched) inputs.emplace(batch, D, step_.law.info());
     const Answer answer = step_.law.evaluate(batch);
     outcome.refusal.add(answer, static_cast<std::size_t>(count_), contacts_);
-    if (const char* changed = inputs ? inputs->changed() : nullptr) outcome.refusal.add(overwriting(changed));
     outcome.sums.add_stable_step(answer.report.stable_velocity_step);
     outcome.refusal.add_unknown(status_, contacts_, answer.code == ILAW_OK ? count_ : 0);
     return outcome.refusal.code == ILAW_OK;

@@ -26,7 +26,6 @@ struct BlockStep {
   const std::vector<std::size_t>& axes;  // where they begin in the state
   Dofs& v;                               // v_free, then what the impulses make of it
   bool gets_energies;
-  bool is_watched;    // whether the law writes to its inputs
   ContactHeat* heat;  // null: no temperatures
 };
 

@@ -8,18 +8,17 @@
 
 namespace ilaw::host {
 
-CoupledGroup::CoupledGroup(const Law& law, const std::string& interface, int dimension,
-                           ilaw_delassus_form form, int partner_count)
+CoupledGroup::CoupledGroup(const Law& law, int dimension, ilaw_delassus_form form, int partner_count)
     : dimension_(dimension),
       form_(form),
       partner_count_(partner_count),
       state_size_(law.info().state_size),
-      law_(law, interface, dimension),
+      law_(law, dimension),
       parameters_(law.info().per_node_parameter_count),
       amounts_(law.info().amount_count) {}
 
-void CoupledGroup::open(bool watches_inputs) {
-  law_.open(watches_inputs);
+void CoupledGroup::open() {
+  law_.open();
   contacts_.clear();
   body_.clear();
   counterpart_.clear();

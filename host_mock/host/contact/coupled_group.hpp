@@ -25,11 +25,10 @@ struct CoupledContact {
 class CoupledGroup {
  public:
   // partner_count: bodies on the other side of a contact; 0: an obstacle.
-  CoupledGroup(const Law& law, const std::string& interface, int dimension, ilaw_delassus_form form,
-               int partner_count);
+  CoupledGroup(const Law& law, int dimension, ilaw_delassus_form form, int partner_count);
 
   // ---- before a solve ----
-  void open(bool watches_inputs);
+  void open();
   void add(const CoupledContact& contact, const ContactArrays& arrays);
   // A number of the state of the contact that was added last: a copy of the accepted one.
   double& last_state(std::size_t number) { return state_[state_.size() - state_size_ + number]; }

@@ -18,7 +18,7 @@ CoupledGroup group_of(const Interface& interface, const Law& law, int dimension)
   if (!counterpart.partners().empty())
     partners = counterpart.shares_partners() ? ContactPoint::most_partners : 1;
   const bool is_driven = interface.setup().has_driven_nodes;
-  return {law, interface.name(), dimension, is_driven ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR, partners};
+  return {law, dimension, is_driven ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR, partners};
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ CoupledInterface::CoupledInterface(Interface& interface)
 const ilaw_contacts& CoupledInterface::open(const StepView& step) {
   interface_.choose_active(step);
   interface_.sums_ = {};
-  group_.open(InputCopy::is_due(step.number));
+  group_.open();
   const InterfaceSetup& setup = interface_.setup();
   const ObstacleMotion& obstacle = interface_.obstacle_;
   ContactArrays& contacts = interface_.contacts_;

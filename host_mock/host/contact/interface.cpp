@@ -3,10 +3,8 @@
 
 #include "base/large_pages.hpp"
 #include "base/parallel.hpp"
-#include "base/running_law.hpp"
 #include "base/words.hpp"
 #include "contact/contact_geometry.hpp"
-#include "contact/law_faults.hpp"
 #include "contact/plain_step.hpp"
 
 #include <algorithm>
@@ -26,7 +24,7 @@ constexpr double driven_delassus = 0x1p-40;
 InterfaceSetup with_tangent(InterfaceSetup setup, const Model& model) {
   const Counterpart& counterpart = *setup.counterpart;
   if (!counterpart.turns() || !counterpart.keeps_normal() || setup.tangent.size() > 0) return setup;
-  const Law law(setup.library, setup.law, setup.arguments, {}, model.dimension());
+  const Law law(setup.library, setup.law, setup.arguments, {}, model.dimension(), setup.name);
   if (!law.axes().empty()) setup.tangent = across(counterpart.flat_at(0.0)->normal);
   return setup;
 }
@@ -37,7 +35,7 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
     : setup_(with_tangent(std::move(setup), model)),
       model_(model),
       dimension_(model.dimension()),
-      law_(setup_.library, setup_.law, setup_.arguments, setup_.tangent, dimension_,
+      law_(setup_.library, setup_.law, setup_.arguments, setup_.tangent, dimension_, setup_.name,
            setup_.has_driven_nodes ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR),
       axes_(law_.axes()),
       contacts_(dimension_, law_.info(), setup_.nodes.size(), !setup_.counterpart->partners().empty()),
@@ -130,13 +128,11 @@ void Interface::solve(const StepView& step, Dofs& v) {
     sums_ = {};
     return;
   }
-  const bool energies = (asks_energies_ || heat_) && (law_.outputs() & ILAW_OUTPUT_ENERGY) != 0,
-             watched = InputCopy::is_due(step.number);
-  const BlockStep blocks{setup_, model_, inverse_mass_, law_,    contacts_, step, obstacle_,
-                         axes_,  v,      energies,      watched, heat()};
+  const bool energies = (asks_energies_ || heat_) && (law_.outputs() & ILAW_OUTPUT_ENERGY) != 0;
+  const BlockStep blocks{setup_, model_, inverse_mass_, law_,  contacts_, step, obstacle_,
+                         axes_,  v,      energies,      heat()};
   const auto step_chunk = steps_plainly_ ? plain_step : solve_chunk;
   outcomes_.resize(static_cast<std::size_t>(search_.chunk_count()));
-  const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
   for_each_chunk(search_.chunk_count(), 1, [&](std::ptrdiff_t c, auto, auto) {
     ChunkOutcome& outcome = outcomes_[static_cast<std::size_t>(c)];
     outcome = {};

@@ -1,7 +1,6 @@
 // State of contacts that no step has reached, and the state that a checkpoint restores.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/bytes.hpp"
-#include "base/running_law.hpp"
 #include "contact/interface.hpp"
 
 #include <ilaw/arrays.hpp>
@@ -47,7 +46,6 @@ std::vector<double> Interface::first_state(int node_index, const Dofs& u) const 
   batch.normal = ilaw::input(normal.data(), dimension_, 1);
   batch.per_node_parameters = inputs.data();
   batch.state_out = ilaw::output(state.data(), static_cast<std::int64_t>(state.size()), 1);
-  const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
   const Answer answer = law_.initialise(batch);
   check({answer.code, 1, -1, 0, answer.report.reason}, std::to_string(setup_.nodes[at(node_index)]));
   return state;

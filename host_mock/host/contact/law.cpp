@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact/law.hpp"
 
-#include "base/running_law.hpp"
+#include "base/running_call.hpp"
 
 #include <ilaw/floating_control.hpp>
 
@@ -14,13 +14,13 @@ namespace ilaw::host {
 namespace {
 
 ilaw::library open_library(const std::string& library, const std::string& law) {
-  const RunningLaw running(law.c_str(), library.c_str(), nullptr);
+  const RunningCall running({law.c_str(), library.c_str()});
   return library.find('/') == std::string::npos ? ilaw::library::named(library) : ilaw::library(library);
 }
 
 ilaw::interface create_named(const std::string& law, const Arguments& arguments, const Vector& tangent,
                              const ilaw::library& library, int dimension, std::uint32_t delassus_form) {
-  const RunningLaw running(law.c_str(), ilaw_library_path(library.get()), nullptr);
+  const RunningCall running({law.c_str(), ilaw_library_path(library.get())});
   return create_law(law, arguments, tangent, library, dimension, delassus_form);
 }
 
@@ -39,9 +39,30 @@ bool is_in(const ilaw_batch& batch, std::int64_t node) {
   return std::find(batch.index, batch.index + batch.node_count, node) != batch.index + batch.node_count;
 }
 
-// A call of a library's code, and what it leaves behind for all code after it.
+}  // namespace
+
+Law::Law(const std::string& library, const std::string& law, const Arguments& arguments,
+         const Vector& tangent, int dimension, const std::string& interface, std::uint32_t delassus_form)
+    : library_(open_library(library, law)),
+      interface_(create_named(law, arguments, tangent, library_, dimension, delassus_form)),
+      info_(interface_.info()),
+      outputs_(library_.law(law)->outputs),
+      id_(library_.law(law)->id),
+      interface_name_(interface.c_str()) {}
+
+std::vector<std::size_t> Law::axes() const {
+  std::vector<std::size_t> axes;
+  std::size_t at = 0;
+  for (std::uint32_t i = 0; i < info_.state_variable_count; at += info_.state_variables[i++]->count)
+    if (info_.state_variables[i]->kind == ILAW_KIND_AXIS) axes.push_back(at);
+  return axes;
+}
+
+// A call of a library's code; no exception and no mode of the processor that it leaves goes further.
 template <class Call>
-Answer answer_of(const ilaw_batch& batch, Call call) {
+Answer Law::answer_of(const ilaw_batch& batch, Call call) const {
+  const RunningCall running(
+      {id_, ilaw_library_path(library_.get()), interface_name_, batch.time, batch.position_step});
   Answer answer{ILAW_OK, {}};
   answer.report.struct_size = sizeof(ilaw_report);
   const ilaw::floating_control before = ilaw::floating_control::now();
@@ -69,24 +90,6 @@ Answer answer_of(const ilaw_batch& batch, Call call) {
     return broken("it named node " + std::to_string(first) +
                   ", which is none of the batch, as the first bad one");
   return answer;
-}
-
-}  // namespace
-
-Law::Law(const std::string& library, const std::string& law, const Arguments& arguments,
-         const Vector& tangent, int dimension, std::uint32_t delassus_form)
-    : library_(open_library(library, law)),
-      interface_(create_named(law, arguments, tangent, library_, dimension, delassus_form)),
-      info_(interface_.info()),
-      outputs_(library_.law(law)->outputs),
-      id_(library_.law(law)->id) {}
-
-std::vector<std::size_t> Law::axes() const {
-  std::vector<std::size_t> axes;
-  std::size_t at = 0;
-  for (std::uint32_t i = 0; i < info_.state_variable_count; at += info_.state_variables[i++]->count)
-    if (info_.state_variables[i]->kind == ILAW_KIND_AXIS) axes.push_back(at);
-  return axes;
 }
 
 Answer Law::initialise(const ilaw_batch& batch) const {

@@ -15,9 +15,10 @@ namespace ilaw::host {
 
 class Law {
  public:
-  // Loads the library, by name or path, and creates the law; throws as create_law.
+  // Loads the library, by name or path, and creates the law; throws as create_law. Messages name the
+  // interface, whose name must live as long.
   Law(const std::string& library, const std::string& law, const Arguments& arguments, const Vector& tangent,
-      int dimension, std::uint32_t delassus_form = ILAW_DELASSUS_SCALAR);
+      int dimension, const std::string& interface, std::uint32_t delassus_form = ILAW_DELASSUS_SCALAR);
 
   const ilaw::library& library() const { return library_; }
   const ilaw_instance_info& info() const { return info_; }
@@ -33,11 +34,14 @@ class Law {
   Answer evaluate(const ilaw_batch& batch) const;
 
  private:
+  template <class Call>
+  Answer answer_of(const ilaw_batch& batch, Call call) const;
+
   ilaw::library library_;
   ilaw::interface interface_;
   ilaw_instance_info info_;
   std::uint32_t outputs_;
-  const char* id_;
+  const char *id_, *interface_name_;
 };
 
 }  // namespace ilaw::host

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact/watched_law.hpp"
 
-#include "base/running_law.hpp"
 #include "contact/law_faults.hpp"
 
 #include <array>
+#include <atomic>
 #include <cmath>
-#include <optional>
+#include <cstdio>
 
 namespace ilaw::host {
 
-WatchedLaw::WatchedLaw(const Law& law, const std::string& interface, int dimension)
-    : law_(law), interface_(interface), dimension_(static_cast<std::size_t>(dimension)), entry_{} {
+WatchedLaw::WatchedLaw(const Law& law, int dimension)
+    : law_(law), dimension_(static_cast<std::size_t>(dimension)), entry_{} {
   entry_.struct_size = sizeof entry_;
   entry_.outputs = law.outputs();
   entry_.id = law.id();
@@ -49,20 +49,18 @@ std::int32_t ILAW_CALL WatchedLaw::evaluate_of(const ilaw_instance* instance, co
 
 // Contacts with bad input are left to the solver, which goes on with the others.
 std::int32_t WatchedLaw::evaluate(const ilaw_batch& batch, ilaw_report* report) {
-  const RunningLaw running(law_.id(), ilaw_library_path(law_.library().get()), interface_.c_str());
-  std::optional<InputCopy> inputs;
-  if (watches_inputs_) inputs.emplace(batch, dimension_, law_.info());
   const Answer answer = law_.evaluate(batch);
   *report = answer.report;
   Refusal refusal;
-  if (const char* changed = inputs ? inputs->changed() : nullptr) refusal.add(overwriting(changed));
   if (answer.code == ILAW_OK) find_wild_impulse(batch, refusal);
   if (answer.code < 0) refusal.add({answer.code, 0, -1, 0, answer.report.reason});
   if (refusal.code == ILAW_OK) return answer.code;
-  if (refusal_.code == ILAW_OK) {
-    reason_ = refusal.reason ? refusal.reason : "";
+  if (!std::atomic_ref(has_refused_).exchange(true)) {
     refusal_ = refusal;
-    refusal_.reason = refusal.reason ? reason_.c_str() : nullptr;
+    if (refusal.reason) {
+      std::snprintf(reason_.data(), reason_.size(), "%s", refusal.reason);
+      refusal_.reason = reason_.data();
+    }
   }
   return ILAW_BAD_LIBRARY;
 }

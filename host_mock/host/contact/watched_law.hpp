@@ -1,32 +1,32 @@
-// watched_law.hpp - a law as the solver of coupled contacts calls it: each call is watched as the host's own
-// are, so that a broken library is named.
+// watched_law.hpp - a law as the solver of coupled contacts calls it, from any of its threads: results are
+// checked as those of the host's own calls are.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "contact/law.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 
 namespace ilaw::host {
 
 class WatchedLaw {
  public:
-  // law and interface must live as long.
-  WatchedLaw(const Law& law, const std::string& interface, int dimension);
+  // law must live as long.
+  WatchedLaw(const Law& law, int dimension);
   WatchedLaw(WatchedLaw&&) = default;  // before the first call: instance() is its address
 
   // Members of ilaw_contacts.
   const ilaw_law* law() const { return &entry_; }
   const ilaw_instance* instance() const { return reinterpret_cast<const ilaw_instance*>(this); }
 
-  // Before a step. watches_inputs: whether calls may not write to their inputs.
-  void open(bool watches_inputs) {
+  // Before a solve.
+  void open() {
     refusal_ = {};
-    watches_inputs_ = watches_inputs;
+    has_refused_ = false;
   }
-  // The first call since open() that ended a solve.
+  // The first call since open() that ended the solve; to be read after it.
   const Refusal& refusal() const { return refusal_; }
 
  private:
@@ -37,12 +37,11 @@ class WatchedLaw {
   void find_wild_impulse(const ilaw_batch& batch, Refusal& refusal) const;
 
   const Law& law_;
-  const std::string& interface_;
   std::size_t dimension_;
   ilaw_law entry_;
   Refusal refusal_;
-  std::string reason_;
-  bool watches_inputs_ = false;
+  std::array<char, 512> reason_{};
+  bool has_refused_ = false;  // the thread that sets it writes the refusal
 };
 
 }  // namespace ilaw::host

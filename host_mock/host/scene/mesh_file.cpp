@@ -21,7 +21,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <csignal>
 #include <cstdint>
 #include <exception>
 #include <fstream>
@@ -272,20 +271,17 @@ MeshData mesh_of(const std::string& bytes) {
   return mesh;
 }
 
-// Its first letter says whether a mesh follows, or why there is none.
-std::string answer_of(const std::filesystem::path& file) {
-  for (const int signal : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT}) std::signal(signal, SIG_DFL);
+std::string bytes_of(const std::filesystem::path& file) {
   try {
     std::ostringstream out;
-    out << '+';
     write_mesh(out, read_by_vtk(file));
     return out.str();
-  } catch (const MeshError& error) {
-    return std::string("-") + error.what();
+  } catch (const MeshError&) {
+    throw;
   } catch (const std::bad_alloc&) {
-    return "-the file is damaged or too large: out of memory";
+    throw MeshError("the file is damaged or too large: out of memory");
   } catch (const std::exception& error) {
-    return std::string("-the file is damaged: ") + error.what();
+    throw MeshError(std::string("the file is damaged: ") + error.what());
   }
 }
 
@@ -296,14 +292,15 @@ MeshData read_mesh_file(const std::filesystem::path& file) {
   constexpr unsigned long long least_bytes = 1ULL << 32, bytes_per_byte = 64;
   std::error_code ignored;
   const auto size = std::filesystem::file_size(file, ignored);
-  const ChildResult read = run_in_child([&] { return answer_of(file); }, max_seconds,
-                                        least_bytes + (ignored ? 0 : bytes_per_byte * size));
-  if (!read.is_complete())
-    throw MeshError("the file is damaged: VTK's reader " + read.reason(max_seconds) +
+  try {
+    return mesh_of(result_in_process([&] { return bytes_of(file); }, max_seconds,
+                                     least_bytes + (ignored ? 0 : bytes_per_byte * size)));
+  } catch (const ProcessEnded& ended) {
+    throw MeshError(std::string("the file is damaged: VTK's reader ") + ended.what() +
                     "; expected a whole mesh");
-  if (!read.text.starts_with('+'))
-    throw MeshError(read.text.substr(std::min<std::size_t>(1, read.text.size())));
-  return mesh_of(read.text.substr(1));
+  } catch (const std::runtime_error& error) {
+    throw MeshError(error.what());
+  }
 }
 
 }  // namespace ilaw::host

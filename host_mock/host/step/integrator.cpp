@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "step/integrator.hpp"
 
-#include "base/running_law.hpp"
 #include "base/words.hpp"
 #include "model/elements.hpp"
 #include "step/dof_loops.hpp"
@@ -52,7 +51,6 @@ struct WildMotion {
 void Integrator::step() {
   start();
   const StepTimes times{time(), static_cast<double>(steps_ + 1) * dt_};
-  RunningLaw::set_step(steps_ + 1);
   Laps laps(timed_steps());
   has_begun_step_ = true;
   v_before_.swap(v_);       // v is written anew from here on

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/bytes.hpp"
 #include "base/large_pages.hpp"
-#include "base/running_law.hpp"
 #include "step/dof_loops.hpp"
 #include "step/integrator.hpp"
 
@@ -105,7 +104,6 @@ void Integrator::start() {
     if (temperatures_) take_heat();
     return;
   }
-  RunningLaw::set_step(0);
   const Eigen::Index d = model_.dimension();
   const Dofs v_free = v_;
   hold_driven_before();

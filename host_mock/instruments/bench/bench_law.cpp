@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/bench_law.hpp"
 
-#include "base/running_law.hpp"
+#include "base/running_call.hpp"
 #include "base/words.hpp"
 #include "contact/law_arguments.hpp"
 #include "scene/arguments.hpp"
@@ -84,7 +84,7 @@ BenchLaw::BenchLaw(const ilaw::library& library, const BenchCase& bench_case)
   setup.delassus_form = form_of(bench_case);
   setup.numbers = ILAW_NUMBERS_DOUBLE;
   setup.frame = bench_case.frame == "global" ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL;
-  const RunningLaw running(name_.c_str(), path_.c_str(), nullptr);
+  const RunningCall running({name_.c_str(), path_.c_str()});
   try {
     interface_.emplace(create_law(name_, arguments, setup, library));
   } catch (const ilaw::error& refusal) {
@@ -109,7 +109,7 @@ template <class Call>
 void BenchLaw::checked(const char* call, Call make) const {
   ilaw_report report{};
   report.struct_size = sizeof report;
-  const RunningLaw running(name_.c_str(), path_.c_str(), nullptr);
+  const RunningCall running({name_.c_str(), path_.c_str()});
   const std::int32_t code = make(&report);
   if (code == ILAW_OK) return;
   throw std::runtime_error("law '" + name_ + "': " + call + " refuses " +

@@ -4,6 +4,7 @@
 #include "base/csv.hpp"
 #include "base/files.hpp"
 #include "scene/json_text.hpp"
+#include "study/process_run.hpp"
 
 #include <cstdio>
 #include <ostream>
@@ -71,14 +72,13 @@ void check_sweep(const json& source, const Sweep& sweep, const std::filesystem::
 
 ErrorTable run_levels(const json& source, const Sweep& sweep, const std::filesystem::path& file) {
   ErrorTable table;
+  table.exact = !exact_solution(scene_at(source, sweep, 0, file)).empty();
   for (int level = 0; level < sweep.levels; ++level) {
-    Scene scene = scene_at(source, sweep, level, file);
-    const std::vector<ExactNode> exact = exact_solution(scene);
-    table.runs.push_back(trace_of(scene));
-    table.exact = !exact.empty();
-    if (table.exact) table.errors.push_back(errors_against(exact, table.runs.back()));
+    const auto scene = [&] { return scene_at(source, sweep, level, file); };
+    const Trace& run = table.runs.emplace_back(trace_in_process(scene, sweep.threads));
+    if (table.exact) table.errors.push_back(errors_against(exact_solution(scene()), run));
     std::fprintf(stderr, "level %d of %d: %lld steps of %g in %.2g s\n", level + 1, sweep.levels,
-                 static_cast<long long>(scene.steps), scene.dt, table.runs.back().seconds);
+                 static_cast<long long>(run.steps), run.dt, run.seconds);
   }
   for (std::size_t k = 0; !table.exact && k + 1 < table.runs.size(); ++k)
     table.errors.push_back(errors_against(table.runs.back(), table.runs[k]));

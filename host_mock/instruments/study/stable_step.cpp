@@ -2,6 +2,7 @@
 #include "study/stable_step.hpp"
 
 #include "step/integrator.hpp"
+#include "study/process_run.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,10 +27,13 @@ bool is_stable(Scene scene) {
   return true;
 }
 
-double largest_stable_step(const std::function<Scene(double)>& scene_at) {
+double largest_stable_step(const std::function<Scene(double)>& scene_at, int threads) {
   constexpr double least = 1e-6, accuracy = 1.01;
+  const auto is_stable_at = [&](double part) {
+    return is_stable_in_process([&] { return scene_at(part); }, threads);
+  };
   double low = 1.0;
-  while (!is_stable(scene_at(low))) {
+  while (!is_stable_at(low)) {
     low *= 0.5;
     if (low < least) return 0.0;
   }
@@ -37,7 +41,7 @@ double largest_stable_step(const std::function<Scene(double)>& scene_at) {
   double high = 2.0 * low;
   while (high > accuracy * low) {
     const double middle = std::sqrt(low * high);
-    (is_stable(scene_at(middle)) ? low : high) = middle;
+    (is_stable_at(middle) ? low : high) = middle;
   }
   return low;
 }

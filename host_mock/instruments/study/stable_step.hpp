@@ -14,7 +14,8 @@ constexpr double most_energy_put_in = 0.1;
 bool is_stable(Scene scene);
 
 // The largest stable step, as a part of that of the scene at 1, which is the largest that is tried;
-// found by halving and bisection to a hundredth. 0: not even a millionth is stable.
-double largest_stable_step(const std::function<Scene(double)>& scene_at);
+// found by halving and bisection to a hundredth, in a process for each run. 0: not even a millionth is
+// stable.
+double largest_stable_step(const std::function<Scene(double)>& scene_at, int threads = 1);
 
 }  // namespace ilaw::host

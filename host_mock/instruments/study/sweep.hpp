@@ -14,6 +14,7 @@ struct Sweep {
   double factor;
   double first;  // step (and element size) of level 0 over the scene's
   bool with_mesh;
+  int threads = 1;  // of each run
 
   // How many times smaller than the scene's.
   double refinement(int level) const { return std::pow(factor, level) / first; }

@@ -4,6 +4,7 @@
 #include "base/clock.hpp"
 #include "scene/json_text.hpp"
 #include "scene/validation.hpp"
+#include "study/process_run.hpp"
 #include "study/stable_step.hpp"
 #include "study/study_laws.hpp"
 
@@ -82,9 +83,11 @@ class Measurement {
     for (std::size_t k = 0; k < study_.laws.size(); ++k) {
       std::vector<MeasuredRun>& runs = study_.laws[k].runs;
       for (int level = 0; level < setup_.sweep.levels; ++level) {
-        Scene run = scene(k, refinement(level));
+        const Scene run = scene(k, refinement(level));
         if (level > 0 && run.steps > setup_.most_steps) break;
-        runs.push_back(measure(run, level));
+        runs.push_back({run.dt});
+        runs.back().steps = run.steps;
+        measure(k, level, runs.back());
       }
       std::fprintf(stderr, "%s: %zu runs\n", study_.laws[k].name.c_str(), runs.size());
     }
@@ -111,7 +114,8 @@ class Measurement {
     law.tried = scenes_.with(entry, level0, 1.0 / margin).dt;
     const double upper = law.tried / step;
     law.stable = law.tried *
-                 largest_stable_step([&](double part) { return scenes_.with(entry, level0, part * upper); });
+                 largest_stable_step([&](double part) { return scenes_.with(entry, level0, part * upper); },
+                                     setup_.sweep.threads);
     if (law.stable == 0.0) throw SceneError("law '" + law.name + "' has no stable step in this scene");
     parts_.push_back(std::min(margin * law.stable / step, 1.0));
     std::fprintf(stderr, "%s: stable up to a step of %.3g\n", law.name.c_str(), law.stable);
@@ -121,21 +125,19 @@ class Measurement {
   void find_reference() {
     study_.exact = !exact_solution(scenes_.own(refinement(0))).empty();
     if (study_.exact) return;
-    Scene finest = scene(0, refinement(setup_.sweep.levels - 1) * setup_.reference);
-    std::fprintf(stderr, "reference: %lld steps\n", static_cast<long long>(finest.steps));
-    reference_ = trace_of(finest);
+    const double finest = refinement(setup_.sweep.levels - 1) * setup_.reference;
+    reference_ = trace_in_process([&] { return scene(0, finest); }, setup_.sweep.threads);
+    std::fprintf(stderr, "reference: %lld steps\n", static_cast<long long>(reference_.steps));
   }
 
-  MeasuredRun measure(Scene& run, int level) const {
-    MeasuredRun measured{run.dt};
-    measured.steps = run.steps;
+  void measure(std::size_t law, int level, MeasuredRun& measured) const {
     attempt(measured, [&] {
-      const Trace trace = trace_of(run);
+      const Trace trace =
+          trace_in_process([&] { return scene(law, refinement(level)); }, setup_.sweep.threads);
       measured.penetration = trace.penetration;
       measured.errors = study_.exact ? errors_against(exact_solution(scenes_.own(refinement(level))), trace)
                                      : errors_against(reference_, trace);
     });
-    return measured;
   }
 
   // All laws in turn, and all over again: what else the machine does hits them alike.
@@ -145,8 +147,8 @@ class Measurement {
       for (int repetition = 0; repetition < setup_.repetitions; ++repetition)
         for (std::size_t k = 0; k < study_.laws.size(); ++k) {
           if (!has_run(k, level) || !run_of(k, level).failure.empty()) continue;
-          Scene run = scene(k, refinement(level));
-          seconds[k].push_back(seconds_of(run));
+          seconds[k].push_back(
+              seconds_in_process([&] { return scene(k, refinement(level)); }, setup_.sweep.threads));
         }
       for (std::size_t k = 0; k < study_.laws.size(); ++k)
         if (!seconds[k].empty()) run_of(k, level).seconds = median(seconds[k]);
