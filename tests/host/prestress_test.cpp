@@ -1,7 +1,10 @@
 // Runs that start from static equilibrium, against closed forms.
 #include "run_result.hpp"
 
+#include <chrono>
+#include <csignal>
 #include <numeric>
+#include <thread>
 
 namespace ilaw::host::testing {
 namespace {
@@ -55,6 +58,23 @@ TEST(Prestress, ColumnStandsOnItsWeight) {
     const double stored = side * side * std::pow(density * gravity, 2) * std::pow(height, 3) / (6.0 * young);
     EXPECT_NEAR(energy.potential, stored * (1.0 - 0.25 / 36.0), 1e-3 * stored);
   }
+}
+
+// It ends at its next step, too, without results but a summary that says so.
+TEST(Prestress, EndsAtAnInterrupt) {
+  const auto folder = fresh_folder();
+  json source = column(0.9);
+  source["prestress"] = {{"tolerance", 1e-300}, {"steps", 1000000000}};
+  const pid_t child =
+      start_program({"run", written(source, folder), "--out", folder.string()}, folder / "messages");
+  for (int k = 0; k < 5000 && !fs::exists(folder / "history.csv.partial"); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  kill(child, SIGTERM);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_TRUE(json_of(folder / "summary.json")["interrupted"]);
+  EXPECT_THAT(text_of(folder / "messages"), HasSubstr("interrupted at step 0 of "));
 }
 
 // A load that comes later does work from the equilibrium on, and the balance closes.

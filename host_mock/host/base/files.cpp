@@ -122,6 +122,7 @@ bool is_still(int descriptor, const std::filesystem::path& file) {
 // ---- the folder -----------------------------------------------------------------------------------------
 
 HeldFolder::HeldFolder(const std::filesystem::path& folder) : lock_(folder / "ilaw.lock") {
+  if (folder.empty()) throw InputError("--out: found an empty name, expected that of a folder");
   std::error_code unmade;
   std::filesystem::create_directories(folder, unmade);
   for (;;) {

@@ -56,7 +56,7 @@ class Accounts {
   void add_step(const Model& model, const Interfaces& interfaces, const StepRecord& step);
 
   // Whether the kinetic energy is far above all that was put in; speed: the largest.
-  bool has_diverged(const Model& model, const Dofs& v, double speed, double dt, std::int64_t steps) const;
+  bool has_diverged(const Model& model, const Dofs& v, double speed, double dt) const;
 
   const EnergyBalance& energy() const { return energy_; }
   const Tally& tally() const { return tally_; }

@@ -247,7 +247,7 @@ void Integrator::take_heat() {
 
 // An unstable step closes its energy balance, too: what the bodies gain in motion they lose in stored energy.
 void Integrator::check_energy() const {
-  if (!accounts_.has_diverged(model_, v_, speed_before_, dt_, steps_)) return;
+  if (!accounts_.has_diverged(model_, v_, speed_before_, dt_)) return;
   throw Diverged(formatted("the kinetic energy is %.3g, where %.3g was put in, step %lld, time %g",
                            kinetic_energy(model_, v_), accounts_.energy().put_in(),
                            static_cast<long long>(steps_), time()) +

@@ -3,13 +3,14 @@
 // has no parameter, and also finds its way where stiffness comes from interfaces. Bodies at rest tell how far
 // they are from equilibrium: the forces that remain.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/stop_request.hpp"
+#include "base/words.hpp"
 #include "step/dof_loops.hpp"
 #include "step/integrator.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include "base/words.hpp"
 
 namespace ilaw::host {
 
@@ -70,6 +71,7 @@ void Integrator::settle() {
   bool at_rest = true;
   for (std::int64_t number = 0; number <= ramp_steps + prestress_->steps; ++number) {
     const double time = time_at(number);
+    if (stop_requested()) throw Interrupted("the prestress was interrupted");
     relax({time - dt_, time, time_at(number + 1)}, at_rest);
     found.steps = number + 1;
     if (number < ramp_steps) {
