@@ -76,7 +76,7 @@ class Run {
       }
       record.interrupted = integrator_.steps() < scene_.steps;
       check_results();
-      // Also at the end, to go on to a later one; two of one step would be one generation.
+      // Also at the end, to go on to a later one.
       if (options_.checkpoint_every > 0 && checkpoint_step_ != integrator_.steps()) write_checkpoint_now();
       history_->commit();
       if (events_) events_->commit();
@@ -111,7 +111,7 @@ class Run {
  private:
   // Results that an earlier run left in the folder, and pictures of them, would be taken for this one's.
   void clear() const {
-    clear_checkpoints(options_.folder);
+    clear_checkpoint(options_.folder);
     for (const char* name : {"summary.json", "history.csv", "events.csv", "view.html"})
       std::filesystem::remove(options_.folder / name);
     std::vector<std::filesystem::path> earlier;
@@ -123,11 +123,7 @@ class Run {
   }
 
   void resume() {
-    std::string said;
-    const Checkpoint checkpoint = read_checkpoint(scene_, integrator_, options_.folder, said);
-    if (!said.empty())
-      complain(said + "; continues from the checkpoint before it, at step " +
-               std::to_string(integrator_.steps()));
+    const Checkpoint checkpoint = read_checkpoint(scene_, integrator_, options_.folder);
     fields_.resume(checkpoint.fields);
     record.resumed_at = checkpoint_step_ = integrator_.steps();
     const bool goes_on =

@@ -90,55 +90,13 @@ void check_identity(const json& found, const json& expected) {
         "'end' of 'time'");
 }
 
-constexpr const char *newest = "checkpoint.cbor", *previous = "checkpoint.previous.cbor";
-
-// A checkpoint, or what it goes on from, that is not as it was written.
-class Damage : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+constexpr const char* file_name = "checkpoint.cbor";
 
 void check_files(const Checkpoint& checkpoint, const std::filesystem::path& folder) {
-  try {
-    check_begins_with(folder / "history.csv", checkpoint.history);
-    if (checkpoint.events.size > 0) check_begins_with(folder / "events.csv", checkpoint.events);
-    for (const json& field : checkpoint.fields)
-      check_begins_with(folder / field.at("name").get<std::string>(), mark_of(field));
-  } catch (const std::runtime_error& error) {
-    throw Damage(error.what());
-  }
-}
-
-// Throws Damage, or std::runtime_error where the checkpoint is whole but of another run.
-Checkpoint read_generation(const Scene& scene, Integrator& integrator, const std::filesystem::path& path) {
-  json content;
-  try {
-    content = content_of(read_whole(path));
-  } catch (const std::exception& error) {
-    throw Damage(path.string() + ": the checkpoint is damaged (" + error.what() + ")");
-  }
-  try {
-    check_identity(content["identity"], identity_of(scene));
-    Checkpoint checkpoint{
-        mark_of(content.at("history")),       content.at("fields"),
-        text_of(content.at("history_state")), mark_of(content.at("events")),
-        text_of(content.at("events_state")),  content["identity"]["scene"].value("output", json::object())};
-    check_files(checkpoint, path.parent_path());
-    std::istringstream state(text_of(content.at("state")));
-    integrator.load(state);
-    if (integrator.steps() > scene.steps)
-      throw std::runtime_error("is at time " + json(integrator.time()).dump() +
-                               " already, expected an 'end' of 'time' that is not before it");
-    return checkpoint;
-  } catch (const Damage&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw std::runtime_error(path.string() + ": " + error.what());
-  }
-}
-
-bool is_there(const std::filesystem::path& file) {
-  std::error_code ignored;
-  return std::filesystem::exists(std::filesystem::symlink_status(file, ignored));
+  check_begins_with(folder / "history.csv", checkpoint.history);
+  if (checkpoint.events.size > 0) check_begins_with(folder / "events.csv", checkpoint.events);
+  for (const json& field : checkpoint.fields)
+    check_begins_with(folder / field.at("name").get<std::string>(), mark_of(field));
 }
 
 }  // namespace
@@ -156,38 +114,42 @@ void write_checkpoint(const Scene& scene, const Integrator& integrator, const Ch
                         {"state", binary_of(state.str())}};
   Bytes packed = json::to_cbor(content);
   const std::uint32_t checksum = checksum_of(packed);
-  AtomicFile file(folder / newest);
+  AtomicFile file(folder / file_name);
   json::to_cbor(json{{"checksum", checksum}, {"content", json::binary(std::move(packed))}},
                 nlohmann::detail::output_adapter<char>(file.stream()));
-  file.flush();
-  if (is_there(folder / newest)) std::filesystem::rename(folder / newest, folder / previous);
   file.commit();
 }
 
-// A damaged checkpoint is replaced by the one before it: the next one must not push that out.
-Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
-                           std::string& said) {
-  const std::filesystem::path path = folder / newest, older = folder / previous;
-  if (!is_there(path) && !is_there(older))
+Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / file_name;
+  std::error_code ignored;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(path, ignored)))
     throw std::runtime_error(path.string() + ": found no checkpoint to resume from");
+  json content;
   try {
-    if (is_there(path)) return read_generation(scene, integrator, path);
-    said = path.string() + ": found none";
-  } catch (const Damage& damage) {
-    if (!is_there(older)) throw;
-    said = damage.what();
+    content = content_of(read_whole(path));
+  } catch (const std::exception& error) {
+    throw std::runtime_error(path.string() + ": the checkpoint is damaged (" + error.what() + ")");
   }
+  Checkpoint checkpoint;
   try {
-    Checkpoint checkpoint = read_generation(scene, integrator, older);
-    std::filesystem::rename(older, path);
-    return checkpoint;
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(said + "; and " + error.what());
+    check_identity(content["identity"], identity_of(scene));
+    checkpoint = {
+        mark_of(content.at("history")),       content.at("fields"),
+        text_of(content.at("history_state")), mark_of(content.at("events")),
+        text_of(content.at("events_state")),  content["identity"]["scene"].value("output", json::object())};
+    std::istringstream state(text_of(content.at("state")));
+    integrator.load(state);
+    if (integrator.steps() > scene.steps)
+      throw std::runtime_error("is at time " + json(integrator.time()).dump() +
+                               " already, expected an 'end' of 'time' that is not before it");
+  } catch (const std::exception& error) {
+    throw std::runtime_error(path.string() + ": " + error.what());
   }
+  check_files(checkpoint, folder);
+  return checkpoint;
 }
 
-void clear_checkpoints(const std::filesystem::path& folder) {
-  for (const char* name : {newest, previous}) std::filesystem::remove(folder / name);
-}
+void clear_checkpoint(const std::filesystem::path& folder) { std::filesystem::remove(folder / file_name); }
 
 }  // namespace ilaw::host

@@ -21,19 +21,16 @@ struct Checkpoint {
   nlohmann::json output = {};      // what the scene asked for, when it was written
 };
 
-// Makes folder/checkpoint.cbor, whole or not at all; the one before it stays as
-// checkpoint.previous.cbor.
+// Replaces folder/checkpoint.cbor, whole or not at all.
 void write_checkpoint(const Scene& scene, const Integrator& integrator, const Checkpoint& checkpoint,
                       const std::filesystem::path& folder);
 
-// Brings the integrator to where the checkpoint in folder stands: the newest of the two that is
-// whole, as are the files that it goes on from. Throws std::runtime_error where there is none, or
-// one of another law or scene; what the scene writes and when it ends may be other than they were.
-// said: why the newest was left out, if it was.
-Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
-                           std::string& said);
+// Brings the integrator to where the checkpoint in folder stands. Throws std::runtime_error if there is none,
+// if it or a file that it goes on from is damaged, or if it is one of another law or scene; what the scene
+// writes and when it ends may be other than they were.
+Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder);
 
-// Removes the checkpoints of an earlier run, from which a new one cannot go on.
-void clear_checkpoints(const std::filesystem::path& folder);
+// Removes that of an earlier run, from which a new one cannot go on.
+void clear_checkpoint(const std::filesystem::path& folder);
 
 }  // namespace ilaw::host
