@@ -49,10 +49,10 @@ int converge(const ConvergeOptions& options) {
   const Sweep sweep = options.sweep.over(read_sweep(source.value("converge", json::object())));
   const std::string title = source.value("title", options.scene.stem().string());
   check_sweep(source, sweep, options.scene);  // before anything is written
-  const HeldFolder held(options.folder);
+  const HeldFolder held(folder);
   const ErrorTable table = run_levels(source, sweep, options.scene);
-  remove_pictures(options.folder);
-  write_convergence(table, sweep, title, options.folder);
+  remove_pictures(folder);
+  write_convergence(table, sweep, title, folder);
   print_table(table);
   return exit_done;
 }

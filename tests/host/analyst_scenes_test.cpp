@@ -243,36 +243,6 @@ std::string warnings_of(const json& scene) {
   return text;
 }
 
-TEST(Warnings, TellOfAWeldThatNothingCanBreak) {
-  json scene = json::parse(
-      R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [0], "area": 1e-4}]},
-    "time": {"dt": 1e-3, "end": 1}, "loads": [{"type": "force", "nodes": [0], "direction": [1], "history": [[0, 0], [1, 50]]}],
-    "interfaces": [{"law": "tie", "parameters": {"strength": 1e6, "memory": 0.01}, "nodes": "all",
-      "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})");
-  // It holds 100 N.s; 50 N over 0.01 are 0.5 N.s.
-  const std::string said = warnings_of(scene);
-  EXPECT_THAT(said, StartsWith("/interfaces/0/parameters/strength: found 1000000.0"));
-  EXPECT_THAT(said, HasSubstr("an impulse of 100.0"));
-  json& parameters = scene["interfaces"][0]["parameters"];
-  parameters["strength"] = 4e4;  // 4 N.s: waves may do it
-  EXPECT_EQ(warnings_of(scene), "");
-  parameters["strength"] = 1e6;
-  json driven = scene;  // a shock of 20 N.s
-  driven["loads"].push_back(json::parse(R"({"type": "shock", "nodes": [0], "time": 0.5, "impulse": [20]})"));
-  EXPECT_EQ(warnings_of(driven), "");
-  driven = scene;  // thrown
-  driven["model"]["points"][0]["velocity"] = {20};
-  EXPECT_EQ(warnings_of(driven), "");
-  driven = scene;  // what moves along may pull as hard as it likes
-  driven["interfaces"][0]["obstacle"]["velocity"] = {-1};
-  EXPECT_EQ(warnings_of(driven), "");
-  scene["interfaces"][0]["law"] = "cohesive";
-  scene["interfaces"][0]["parameters"] = {{"strength", 1e8}, {"toughness", 1e3}};
-  EXPECT_THAT(warnings_of(scene), HasSubstr("a force of 10000.0"));
-  scene["interfaces"][0]["parameters"]["strength"] = 4e6;
-  EXPECT_EQ(warnings_of(scene), "");
-}
-
 TEST(Warnings, TellOfAMemoryOfLessThanTwoSteps) {
   json scene = json::parse(
       R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [0], "area": 1}]},

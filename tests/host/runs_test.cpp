@@ -253,19 +253,13 @@ json block_on_plane() {
       "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})");
 }
 
-// Nodes on a plane do not tell which side is meant, nodes behind it do; and a place in millimeters
-// is near to no node of a body in meters.
-TEST(Warnings, TellOfTheWrongSideAndOfWrongUnits) {
-  using Warnings = std::vector<std::string>;
+// Nodes on a plane do not tell which side is meant, nodes behind it do.
+TEST(Warnings, TellOfTheWrongSide) {
   const auto warnings_of = [](const char* pointer, const char* value) {
     json scene = block_on_plane();
     scene[json::json_pointer(pointer)] = json::parse(value);
     return scene_of(scene).warnings;
   };
-  EXPECT_EQ(warnings_of("/output/watch", R"([{"near": [0, 0, 0.27]}])"), Warnings{});
-  EXPECT_EQ(warnings_of("/output/watch", R"([0, {"near": [[0, 0, 0], [0, 0, 0.6]]}])"),
-            Warnings{"/output/watch/1/near: found [[0,0,0],[0,0,0.6]], 0.5 from the nearest node, beyond the "
-                     "model's size, 0.17320508075688776: are they in its units?"});
   EXPECT_THAT(
       warnings_of("/interfaces/0/obstacle/normal", "[0, 0, -1]").front(),
       StartsWith(

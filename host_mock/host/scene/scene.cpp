@@ -112,10 +112,8 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   warn_of_times(scene);
   warn_of_start(scene);
   warn_of_side(scene);
-  warn_of_places(scene);
   warn_of_partners(scene);
   warn_of_open_bonds(scene);
-  warn_of_strength(scene);
   warn_of_memory(scene);
   warn_of_locking(scene);
   warn_of_temperatures(scene);

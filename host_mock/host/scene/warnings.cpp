@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ilaw::host {
@@ -133,53 +134,6 @@ void warn_of_side(Scene& scene) {
   }
 }
 
-namespace {
-
-// The farthest that one of the places is from the node that is nearest to it.
-double farthest_place(const json& places, const Model& model) {
-  if (places.empty() || !places[0].is_number()) {
-    double farthest = 0.0;
-    for (const json& place : places) farthest = std::max(farthest, farthest_place(place, model));
-    return farthest;
-  }
-  const auto numbers = places.get<std::vector<double>>();
-  const Eigen::Index d = model.dimension();
-  const Eigen::Map<const Dofs> place(numbers.data(), d);
-  double nearest = HUGE_VAL;
-  for (int node = 0; node < model.node_count(); ++node)
-    nearest = std::min(nearest, (model.position().segment(d * node, d) - place).norm());
-  return nearest;
-}
-
-double extent_of(const Model& model) {
-  const Eigen::Map<const Eigen::MatrixXd> places(model.position().data(), model.dimension(),
-                                                 model.node_count());
-  return (places.rowwise().maxCoeff() - places.rowwise().minCoeff()).norm();
-}
-
-void warn_of_places_in(const json& part, const std::string& pointer, Scene& scene) {
-  if (part.is_object() && part.contains("near")) {
-    const double distance = farthest_place(part["near"], *scene.model), size = extent_of(*scene.model);
-    if (size > 0.0 && distance > size)
-      scene.warnings.push_back(pointer + "/near: found " + part["near"].dump() + ", " +
-                               json(distance).dump() + " from the nearest node, beyond the model's size, " +
-                               json(size).dump() + ": are they in its units?");
-    return;
-  }
-  for (auto one = part.begin(); one != part.end(); ++one) {
-    if (!one->is_structured()) continue;  // lists of a million numbers, too
-    const std::string key = part.is_array() ? std::to_string(one - part.begin()) : one.key();
-    warn_of_places_in(*one, pointer + "/" + key, scene);
-  }
-}
-
-}  // namespace
-
-void warn_of_places(Scene& scene) {
-  for (const char* part : {"sets", "initial", "springs", "loads", "interfaces", "output"})
-    if (scene.source.contains(part)) warn_of_places_in(scene.source[part], std::string("/") + part, scene);
-}
-
 // The n-th node meets the n-th partner: lists in different orders pair what is far from each other.
 void warn_of_partners(Scene& scene) {
   constexpr double most_edges = 0.5;
@@ -234,6 +188,34 @@ void warn_of_open_bonds(Scene& scene) {
       scene.warnings.push_back(at("/interfaces", i) + ": " + std::to_string(gaps.above) +
                                " node(s) start bonded across an open gap, node " +
                                std::to_string(gaps.farthest) + " across " + json(gaps.largest).dump());
+  }
+}
+
+namespace {
+
+bool has_memory_in_seconds(const ilaw_law& law) {
+  for (std::uint32_t i = 0; i < law.parameter_count; ++i)
+    if (std::string_view(law.parameters[i]->name) == "memory")
+      return std::string_view(law.parameters[i]->unit) == "s";
+  return false;
+}
+
+}  // namespace
+
+// A window that holds hardly more than the impulse of one step.
+void warn_of_memory(Scene& scene) {
+  constexpr double least_steps = 2.0;
+  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
+    const Interface& interface = *scene.interfaces[i];
+    const auto& numbers = interface.setup().arguments.numbers;
+    const auto memory = numbers.find("memory");
+    const ilaw_law* law = interface.library().law(interface.setup().law);
+    if (!law || memory == numbers.end() || !has_memory_in_seconds(*law)) continue;
+    if (!(memory->second > 0.0) || memory->second >= least_steps * scene.dt) continue;
+    scene.warnings.push_back(at("/interfaces", i) + "/parameters/memory: found " +
+                             json(memory->second).dump() + ", less than two steps of " +
+                             json(scene.dt).dump() + ": whether a load that is not smooth breaks the bond " +
+                             "depends on where a step begins; only smaller steps help");
   }
 }
 

@@ -12,14 +12,10 @@ void warn_of_times(Scene& scene);
 void warn_of_start(Scene& scene);
 // Bodies on the wrong side of a plane.
 void warn_of_side(Scene& scene);
-// Nodes that are sought near a place far from all of them.
-void warn_of_places(Scene& scene);
 // Bonds across a gap, which pull from afar.
 void warn_of_open_bonds(Scene& scene);
 // Partners of nodes that stand twice in a list, or that do not face their nodes.
 void warn_of_partners(Scene& scene);
-// Bonds stronger than all that acts in the scene.
-void warn_of_strength(Scene& scene);
 // Bonds that remember less than two steps.
 void warn_of_memory(Scene& scene);
 // Blocks that can hardly bend: full elements close to incompressibility.
