@@ -270,6 +270,7 @@ TEST(TurningObstacle, TurnsMemoryOncePerStep) {
       auto [alone, plain] = simulation_of(source);
       source["interfaces"].push_back(out_of_reach);
       auto [shared, coupled] = simulation_of(source);
+      coupled.set_tolerance(1e-14);
       for (double fastest = 1.0; plain.steps() < alone.steps;) {
         plain.step();
         coupled.step();

@@ -18,7 +18,6 @@ CoupledGroup::CoupledGroup(const Law& law, int dimension, ilaw_delassus_form for
       amounts_(law.info().amount_count) {}
 
 void CoupledGroup::open() {
-  law_.open();
   contacts_.clear();
   body_.clear();
   counterpart_.clear();

@@ -62,7 +62,6 @@ class CoupledGroup {
   std::size_t amount_count() const { return amounts_.size(); }
   double amount(std::size_t k, std::size_t i) const { return amounts_[k][i]; }
   double state(std::size_t i, std::size_t number) const { return next_state_[state_size_ * i + number]; }
-  const Refusal& refusal() const { return law_.refusal(); }
 
   // ---- between steps: the forces with which the iterations of the next step begin ----
   void keep_forces(double velocity_step);

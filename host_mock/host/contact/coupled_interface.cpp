@@ -93,7 +93,6 @@ void CoupledInterface::take() {
 }
 
 void CoupledInterface::check(const ilaw_coupled_report& report, std::int64_t bad_contact, double dt) const {
-  interface_.check(group_.refusal(), dt);
   if (bad_contact < 0) return;
   interface_.check({ILAW_BAD_NODES, report.bad_count, group_.contact(static_cast<std::size_t>(bad_contact)),
                     0, report.reason},
@@ -121,6 +120,10 @@ void CoupledInterface::check_driven(const StepView& step, const Dofs& v) const {
         formatted("node %d is driven along axis %td against '%s' (law '%s'), which cannot give way",
                   interface_.node_of(k), axis, interface_.name().c_str(), interface_.setup().law.c_str()));
   }
+}
+
+void CoupledInterface::refuse(ilaw_result code, const char* reason) const {
+  interface_.check({code, 0, -1, 0, reason}, 0.0);
 }
 
 void CoupledInterface::refuse_driven(std::size_t place) const {

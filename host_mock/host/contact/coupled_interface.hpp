@@ -31,6 +31,8 @@ class CoupledInterface {
   void take();
   // Throws as Interface::solve(), given the first contact with bad input (place in the group; -1: none).
   void check(const ilaw_coupled_report& report, std::int64_t bad_contact, double dt) const;
+  // Throws as Interface::solve(), what ended the whole solve.
+  void refuse(ilaw_result code, const char* reason) const;
   // Throws: a rigid law must push this contact's node along an axis that is driven.
   [[noreturn]] void refuse_driven(std::size_t place) const;
   // Throws std::runtime_error where a motion drives a node against a law that cannot give way.

@@ -4,9 +4,7 @@
 #include "contact/law_faults.hpp"
 
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <cstdio>
 
 namespace ilaw::host {
 
@@ -19,8 +17,9 @@ WatchedLaw::WatchedLaw(const Law& law, int dimension)
   entry_.evaluate = evaluate_of;
 }
 
-// Before other laws see its velocity, and are blamed. Which node a place of the batch is, the solver knows.
-void WatchedLaw::find_wild_impulse(const ilaw_batch& batch, Refusal& refusal) const {
+// Why an impulse is none, before other laws see its velocity and are blamed; null: all are. Which node a
+// place of the batch is, the solver knows.
+const char* WatchedLaw::wild_impulse(const ilaw_batch& batch) const {
   constexpr std::array<double, ILAW_ENERGY_COUNT> no_energy{};
   std::array<double, 3> impulse{};
   for (std::int64_t i = 0; i < batch.node_count; ++i) {
@@ -30,10 +29,10 @@ void WatchedLaw::find_wild_impulse(const ilaw_batch& batch, Refusal& refusal) co
       impulse[c] = first[static_cast<std::int64_t>(c) * batch.impulse.component_stride];
       is_finite = is_finite && std::isfinite(impulse[c]);
     }
-    if (is_finite) continue;
-    const char* fault = fault_of(impulse.data(), static_cast<int>(dimension_), no_energy.data(), ILAW_FREE);
-    return refusal.add({ILAW_BAD_LIBRARY, 0, -1, 0, fault});
+    if (!is_finite)
+      return fault_of(impulse.data(), static_cast<int>(dimension_), no_energy.data(), ILAW_FREE);
   }
+  return nullptr;
 }
 
 std::int32_t ILAW_CALL WatchedLaw::info_of(const ilaw_instance* instance, ilaw_instance_info* info) {
@@ -44,25 +43,16 @@ std::int32_t ILAW_CALL WatchedLaw::info_of(const ilaw_instance* instance, ilaw_i
 
 std::int32_t ILAW_CALL WatchedLaw::evaluate_of(const ilaw_instance* instance, const ilaw_batch* batch,
                                                ilaw_report* report) {
-  return const_cast<WatchedLaw*>(reinterpret_cast<const WatchedLaw*>(instance))->evaluate(*batch, report);
+  return reinterpret_cast<const WatchedLaw*>(instance)->evaluate(*batch, *report);
 }
 
 // Contacts with bad input are left to the solver, which goes on with the others.
-std::int32_t WatchedLaw::evaluate(const ilaw_batch& batch, ilaw_report* report) {
+std::int32_t WatchedLaw::evaluate(const ilaw_batch& batch, ilaw_report& report) const {
   const Answer answer = law_.evaluate(batch);
-  *report = answer.report;
-  Refusal refusal;
-  if (answer.code == ILAW_OK) find_wild_impulse(batch, refusal);
-  if (answer.code < 0) refusal.add({answer.code, 0, -1, 0, answer.report.reason});
-  if (refusal.code == ILAW_OK) return answer.code;
-  if (!std::atomic_ref(has_refused_).exchange(true)) {
-    refusal_ = refusal;
-    if (refusal.reason) {
-      std::snprintf(reason_.data(), reason_.size(), "%s", refusal.reason);
-      refusal_.reason = reason_.data();
-    }
-  }
-  return ILAW_BAD_LIBRARY;
+  report = answer.report;
+  if (answer.code != ILAW_OK) return answer.code;
+  report.reason = wild_impulse(batch);
+  return report.reason ? ILAW_BAD_LIBRARY : ILAW_OK;
 }
 
 }  // namespace ilaw::host

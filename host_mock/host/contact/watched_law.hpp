@@ -5,7 +5,6 @@
 
 #include "contact/law.hpp"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -21,27 +20,16 @@ class WatchedLaw {
   const ilaw_law* law() const { return &entry_; }
   const ilaw_instance* instance() const { return reinterpret_cast<const ilaw_instance*>(this); }
 
-  // Before a solve.
-  void open() {
-    refusal_ = {};
-    has_refused_ = false;
-  }
-  // The first call since open() that ended the solve; to be read after it.
-  const Refusal& refusal() const { return refusal_; }
-
  private:
   static std::int32_t ILAW_CALL info_of(const ilaw_instance* instance, ilaw_instance_info* info);
   static std::int32_t ILAW_CALL evaluate_of(const ilaw_instance* instance, const ilaw_batch* batch,
                                             ilaw_report* report);
-  std::int32_t evaluate(const ilaw_batch& batch, ilaw_report* report);
-  void find_wild_impulse(const ilaw_batch& batch, Refusal& refusal) const;
+  std::int32_t evaluate(const ilaw_batch& batch, ilaw_report& report) const;
+  const char* wild_impulse(const ilaw_batch& batch) const;
 
   const Law& law_;
   std::size_t dimension_;
   ilaw_law entry_;
-  Refusal refusal_;
-  std::array<char, 512> reason_{};
-  bool has_refused_ = false;  // the thread that sets it writes the refusal
 };
 
 }  // namespace ilaw::host

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 
 namespace ilaw::host {
 
@@ -130,12 +131,12 @@ void CoupledStep::solve_groups(const StepView& step, double speed, const double*
   try {
     report_ = solver_.solve(bodies, given_, options);
   } catch (const ilaw::coupled_error& refused) {
-    for (const CoupledInterface& interface : interfaces_) interface.check(report_, -1, step.dt);
+    if (refused.code() == ILAW_OUT_OF_MEMORY) throw std::bad_alloc();
     const ilaw_coupled_report& report = refused.report();
-    if (report.bad_group >= 0 && report.bad_contact >= 0)
-      interfaces_[static_cast<std::size_t>(report.bad_group)].refuse_driven(
-          static_cast<std::size_t>(report.bad_contact));
-    throw;
+    if (report.bad_group < 0) throw;
+    const CoupledInterface& interface = interfaces_[static_cast<std::size_t>(report.bad_group)];
+    if (report.bad_contact >= 0) interface.refuse_driven(static_cast<std::size_t>(report.bad_contact));
+    interface.refuse(refused.code(), report.reason);
   }
   for (std::size_t i = 0; i < interfaces_.size(); ++i) {
     const bool is_bad = report_.bad_group == static_cast<std::int64_t>(i);
