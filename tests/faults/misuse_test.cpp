@@ -97,8 +97,8 @@ TEST(Folder, HasNoLinkThatIsFollowed) {
   const std::string command =
       "run " + written(scene, folder) + " --out " + out.string() + " --checkpoint-every 50";
   for (const char* suffix : {"", ".partial"})
-    for (const char* name : {"history.csv", "summary.json", "checkpoint.cbor",
-                             "fields_000000.vtu", "fields.vtu.series"}) {
+    for (const char* name :
+         {"history.csv", "summary.json", "checkpoint.cbor", "fields_000000.vtu", "fields.vtu.series"}) {
       fs::remove_all(out);
       fs::create_directories(out);
       fs::create_symlink(precious, out / (std::string(name) + suffix));

@@ -9,8 +9,8 @@ namespace {
 
 ilaw_delassus_form random_form(const ilaw_law& law, Draw& draw) {
   std::vector<ilaw_delassus_form> forms;
-  for (const ilaw_delassus_form form : {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_TRANSVERSE, ILAW_DELASSUS_FULL,
-                                        ILAW_DELASSUS_TRANSVERSE_SPIN})
+  for (const ilaw_delassus_form form :
+       {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_TRANSVERSE, ILAW_DELASSUS_FULL, ILAW_DELASSUS_TRANSVERSE_SPIN})
     if (law.delassus_forms & form) forms.push_back(form);
   return forms.empty() ? ilaw_delassus_form{ILAW_DELASSUS_FULL} : draw.one_of(forms);
 }
@@ -70,7 +70,8 @@ std::optional<std::string> stress_coupled(const LawBook::Entry& law, std::uint64
   const std::optional<interface> made = random_interface(law, form, setup.step, draw);
   if (!made) return {};
   MadeProblem problem({&*made}, form, setup, draw);
-  if (!(problem.audit_of_solution().residual <= well_posed)) return {};  // the law's answer is not known better
+  if (!(problem.audit_of_solution().residual <= well_posed))
+    return {};  // the law's answer is not known better
   coupled solver;
   ilaw_coupled_report report{};
   try {
@@ -86,9 +87,10 @@ std::optional<std::string> stress_coupled(const LawBook::Entry& law, std::uint64
   }
   const std::string fault = fault_of(problem.audit(report));
   if (fault.empty()) return {};
-  return formatted("%d coupled contacts of %d bodies, made from their solution, are called solved: %s of the "
-                   "largest velocity of the problem",
-                   problem.contact_count(), problem.body_count(), fault.c_str());
+  return formatted(
+      "%d coupled contacts of %d bodies, made from their solution, are called solved: %s of the "
+      "largest velocity of the problem",
+      problem.contact_count(), problem.body_count(), fault.c_str());
 }
 
 }  // namespace ilaw::host
