@@ -235,6 +235,7 @@ class Run {
           std::pair{"external work", energy.external_work},
           std::pair{"work of the interfaces", energy.interface_work}})
       if (!std::isfinite(value)) throw Diverged("the " + std::string(name) + " is " + std::to_string(value));
+    integrator_.check_energy();
   }
 
   void write_checkpoint_now() {

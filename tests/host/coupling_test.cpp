@@ -320,7 +320,7 @@ TEST(RunWarnings, TellThatTheFastestVibrationGrows) {
                                                law_on("bar.right", plane({2}, {-1}), "contact")})));
     return integrator.warnings();
   };
-  const std::vector<std::string> warnings = warnings_at(1, 50, 0);
+  const std::vector<std::string> warnings = warnings_at(1, 100, 0);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_THAT(warnings[0], HasSubstr("the fastest vibration of the mesh grows"));
   EXPECT_TRUE(warnings_at(0.999, 100, 0).empty());

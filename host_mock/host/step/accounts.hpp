@@ -55,8 +55,10 @@ class Accounts {
   bool is_wrong(const Model& model, const ilaw_coupled_report& solution, const Dofs& v_before) const;
   void add_step(const Model& model, const Interfaces& interfaces, const StepRecord& step);
 
-  // Whether the kinetic energy is far above all that was put in; speed: the largest.
-  bool has_diverged(const Model& model, const Dofs& v, double speed, double dt) const;
+  // Whether the kinetic energy is far above all that was put in; speed: the largest. Less is allowed at the
+  // end of a run.
+  bool has_diverged(const Model& model, const Dofs& v, double speed, double dt, std::int64_t steps,
+                    bool is_end) const;
 
   const EnergyBalance& energy() const { return energy_; }
   const Tally& tally() const { return tally_; }

@@ -79,7 +79,7 @@ void Integrator::step() {
   accounts_.add_step(model_, interfaces_,
                      {external.work, damping_impulse_.size() == 0 ? nullptr : &damping_impulse_,
                       internal_impulse_, v_before_, v_, std::max(speed_free, speed_before_), times.after});
-  check_energy();
+  check_energy(false);
 }
 
 // A failed run reports its last complete step.
@@ -246,8 +246,8 @@ void Integrator::take_heat() {
 }
 
 // An unstable step closes its energy balance, too: what the bodies gain in motion they lose in stored energy.
-void Integrator::check_energy() const {
-  if (!accounts_.has_diverged(model_, v_, speed_before_, dt_)) return;
+void Integrator::check_energy(bool is_end) const {
+  if (!accounts_.has_diverged(model_, v_, speed_before_, dt_, steps_, is_end)) return;
   throw Diverged(formatted("the kinetic energy is %.3g, where %.3g was put in, step %lld, time %g",
                            kinetic_energy(model_, v_), accounts_.energy().put_in(),
                            static_cast<long long>(steps_), time()) +

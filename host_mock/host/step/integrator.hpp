@@ -48,6 +48,8 @@ class Integrator {
   void start();
   // One step. Throws ilaw::error when a law refuses a node, Diverged when the motion is not finite.
   void step();
+  // Throws Diverged where the kinetic energy is far above what was put in. Each step does it, with more room.
+  void check_energy(bool is_end = true) const;
   // Where step() threw: the bodies as they were before it. Nothing otherwise.
   void take_back_step();
 
@@ -114,7 +116,6 @@ class Integrator {
     return contact_inverse_mass_.size() > 0 ? contact_inverse_mass_.data() : inverse_mass_.data();
   }
   void check_motion(double speed, double time) const;
-  void check_energy() const;
   void take_heat();
 
   const Model& model_;
