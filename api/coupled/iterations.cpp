@@ -37,7 +37,8 @@ void Iterations::iterate(Blocks& blocks, Progress& progress, const Sweep::Conjug
     progress.reason = "a function of the exchange returned a value that is not a number";
   }
   if (most[2] > 0.0) progress.code = change.code < 0 ? change.code : std::int32_t{ILAW_INVALID_ARGUMENT};
-  progress.note(most[3] > 0.0 ? Progress::infinity : most[0], change.square, most[1]);
+  if (most[3] > 0.0) most[0] = Progress::infinity;
+  progress.note(most[0], change.square, most[1]);
 }
 
 void Iterations::keep_start() {
@@ -450,7 +451,8 @@ std::vector<Progress> Iterations::progress_of_islands(const Blocks& blocks, cons
       for (std::size_t c = 0; c < static_cast<std::size_t>(layout.width); ++c) {
         const double length = c < 3 ? 1.0 : block.column(layout.length)[q];
         const double change = std::fabs(length * response[c * max_stride + q]);
-        own.change = std::isfinite(change) ? std::max(own.change, change) : Progress::infinity;
+        own.change = std::max(own.change, change);
+        if (!std::isfinite(change)) own.change = Progress::infinity;
       }
     }
   }
