@@ -394,79 +394,86 @@ std::vector<double> MadeProblem::velocities() const {
   return all;
 }
 
-ilaw_coupled_report MadeProblem::solve(coupled& solver, const ilaw_coupled_options& options) {
-  const auto body_stride = static_cast<std::int64_t>(sizeof(Body) / sizeof(double));
+// A group per law, whose arrays are gathered from the contacts.
+struct MadeProblem::Group {
+  std::vector<std::size_t> contacts;
+  std::vector<std::int32_t> body, counterpart;
+  std::vector<double> gap, normal, arm, other_arm, wall, wall_before, impulse, state_in, state_out;
+  double area = 1.0;
+  ilaw_batch batch{};
+  ilaw_contacts given{};
+
+  void add(std::size_t k, const Contact& contact) {
+    const auto append = [](std::vector<double>& to, const auto& values) {
+      to.insert(to.end(), values.begin(), values.end());
+    };
+    contacts.push_back(k);
+    body.push_back(contact.body);
+    counterpart.push_back(contact.counterpart);
+    gap.push_back(contact.gap);
+    append(normal, contact.normal);
+    append(arm, contact.arm);
+    append(other_arm, contact.other_arm);
+    append(wall, contact.wall);
+    append(wall_before, contact.wall_before);
+    append(impulse, contact.impulse);
+    append(state_in, contact.state);
+  }
+  void describe(const interface& law, ilaw_delassus_form form, double step) {
+    const auto states = static_cast<std::int64_t>(law.info().state_size);
+    state_out = state_in;
+    batch.struct_size = sizeof batch;
+    batch.node_count = static_cast<std::int64_t>(contacts.size());
+    batch.time = batch.velocity_step = batch.position_step = step;
+    batch.gap = ilaw::input(gap.data(), 1, 0);
+    batch.area = ilaw::input(&area, 0, 0);
+    batch.normal = ilaw::input(normal.data(), 3, 1);
+    batch.state_in = ilaw::input(state_in.data(), states, 1);
+    batch.state_out = ilaw::output(state_out.data(), states, 1);
+    batch.impulse = ilaw::output(impulse.data(), 6, 1);
+    const bool has_spins = form == ILAW_DELASSUS_TRANSVERSE_SPIN;
+    if (has_spins) batch.moment = ilaw::output(impulse.data() + 3, 6, 1);
+    given = contacts_of(law, form, batch, body.data(), counterpart.data());
+    given.arm = ilaw::input(arm.data(), 3, 1);
+    given.counterpart_arm = ilaw::input(other_arm.data(), 3, 1);
+    given.wall_velocity = ilaw::input(wall.data(), 6, 1);
+    given.wall_previous = ilaw::input(wall_before.data(), 6, 1);
+    if (!has_spins) return;
+    given.wall_spin = ilaw::input(wall.data() + 3, 6, 1);
+    given.wall_spin_previous = ilaw::input(wall_before.data() + 3, 6, 1);
+  }
+};
+
+ilaw_bodies MadeProblem::describe_bodies(std::vector<double>& inertia) {
+  const auto stride = static_cast<std::int64_t>(sizeof(Body) / sizeof(double));
   ilaw_bodies bodies{};
   bodies.struct_size = sizeof bodies;
   bodies.dimension = 3;
   bodies.count = bodies.owned_count = body_count();
-  std::vector<double> inertia;
+  Body& first = bodies_.front();
+  bodies.inverse_mass = ilaw::input(first.inverse.data(), stride, setup_.no_freedom > 0.0 ? 1 : 0);
+  bodies.v_free = ilaw::input(first.free.data(), stride, 1);
+  bodies.v_previous = ilaw::input(first.before.data(), stride, 1);
+  bodies.velocity = ilaw::output(first.velocity.data(), stride, 1);
+  if (!rotates()) return bodies;
   for (const Body& body : bodies_)
     inertia.insert(inertia.end(), {body.inverse[3], body.inverse[4], body.inverse[5], 0.0, 0.0, 0.0});
-  Body& first = bodies_.front();
-  bodies.inverse_mass = ilaw::input(first.inverse.data(), body_stride, setup_.no_freedom > 0.0 ? 1 : 0);
-  bodies.v_free = ilaw::input(first.free.data(), body_stride, 1);
-  bodies.v_previous = ilaw::input(first.before.data(), body_stride, 1);
-  bodies.velocity = ilaw::output(first.velocity.data(), body_stride, 1);
-  if (rotates()) {
-    bodies.inverse_inertia = ilaw::input(inertia.data(), 6, setup_.rotate ? 1 : 0);
-    bodies.spin_free = ilaw::input(first.free.data() + 3, body_stride, 1);
-    bodies.spin_previous = ilaw::input(first.before.data() + 3, body_stride, 1);
-    bodies.spin = ilaw::output(first.velocity.data() + 3, body_stride, 1);
-  }
-  // One group per law, whose arrays are gathered and scattered here.
-  struct Group {
-    std::vector<std::size_t> contacts;
-    std::vector<std::int32_t> body, counterpart;
-    std::vector<double> gap, normal, arm, other_arm, wall, wall_before, impulse, state_in, state_out;
-    ilaw_batch batch{};
-    ilaw_contacts given{};
-  };
+  bodies.inverse_inertia = ilaw::input(inertia.data(), 6, setup_.rotate ? 1 : 0);
+  bodies.spin_free = ilaw::input(first.free.data() + 3, stride, 1);
+  bodies.spin_previous = ilaw::input(first.before.data() + 3, stride, 1);
+  bodies.spin = ilaw::output(first.velocity.data() + 3, stride, 1);
+  return bodies;
+}
+
+ilaw_coupled_report MadeProblem::solve(coupled& solver, const ilaw_coupled_options& options) {
+  std::vector<double> inertia;
+  const ilaw_bodies bodies = describe_bodies(inertia);
   std::vector<Group> groups(laws_.size());
+  for (std::size_t k = 0; k < contacts_.size(); ++k) groups[contacts_[k].law].add(k, contacts_[k]);
   std::vector<const ilaw_contacts*> given;
-  const double area = 1.0;
-  const auto append = [](std::vector<double>& to, const auto& values) {
-    to.insert(to.end(), values.begin(), values.end());
-  };
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const Contact& contact = contacts_[k];
-    Group& group = groups[contact.law];
-    group.contacts.push_back(k);
-    group.body.push_back(contact.body);
-    group.counterpart.push_back(contact.counterpart);
-    group.gap.push_back(contact.gap);
-    append(group.normal, contact.normal);
-    append(group.arm, contact.arm);
-    append(group.other_arm, contact.other_arm);
-    append(group.wall, contact.wall);
-    append(group.wall_before, contact.wall_before);
-    append(group.impulse, contact.impulse);
-    append(group.state_in, contact.state);
-  }
   for (std::size_t l = 0; l < laws_.size(); ++l) {
-    Group& group = groups[l];
-    const auto states = static_cast<std::int64_t>(laws_[l]->info().state_size);
-    group.state_out = group.state_in;
-    group.batch.struct_size = sizeof group.batch;
-    group.batch.node_count = static_cast<std::int64_t>(group.contacts.size());
-    group.batch.time = group.batch.velocity_step = group.batch.position_step = setup_.step;
-    group.batch.gap = ilaw::input(group.gap.data(), 1, 0);
-    group.batch.area = ilaw::input(&area, 0, 0);
-    group.batch.normal = ilaw::input(group.normal.data(), 3, 1);
-    group.batch.state_in = ilaw::input(group.state_in.data(), states, 1);
-    group.batch.state_out = ilaw::output(group.state_out.data(), states, 1);
-    group.batch.impulse = ilaw::output(group.impulse.data(), 6, 1);
-    if (width() == 6) group.batch.moment = ilaw::output(group.impulse.data() + 3, 6, 1);
-    group.given = contacts_of(*laws_[l], form_, group.batch, group.body.data(), group.counterpart.data());
-    group.given.arm = ilaw::input(group.arm.data(), 3, 1);
-    group.given.counterpart_arm = ilaw::input(group.other_arm.data(), 3, 1);
-    group.given.wall_velocity = ilaw::input(group.wall.data(), 6, 1);
-    group.given.wall_previous = ilaw::input(group.wall_before.data(), 6, 1);
-    if (width() == 6) {
-      group.given.wall_spin = ilaw::input(group.wall.data() + 3, 6, 1);
-      group.given.wall_spin_previous = ilaw::input(group.wall_before.data() + 3, 6, 1);
-    }
-    given.push_back(&group.given);
+    groups[l].describe(*laws_[l], form_, setup_.step);
+    given.push_back(&groups[l].given);
   }
   const ilaw_coupled_report report = solver.solve(bodies, given, options);
   for (const Group& group : groups)

@@ -79,9 +79,12 @@ class MadeProblem {
     std::vector<double> state;
   };
 
+  struct Group;
+
   int width() const { return form_ == ILAW_DELASSUS_TRANSVERSE_SPIN ? 6 : 3; }
   bool rotates() const { return setup_.rotate || form_ >= ILAW_DELASSUS_TRANSVERSE; }
   void draw_bodies(Draw& draw);
+  ilaw_bodies describe_bodies(std::vector<double>& inertia);
   void draw_contact(Draw& draw, Contact& contact);
   void make(Draw& draw);
   Wrench relative(const Contact& contact, Wrench Body::*motion) const;
