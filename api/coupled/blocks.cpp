@@ -21,12 +21,6 @@ Block& Blocks::add(const Layout& layout, std::int32_t group, std::int32_t colour
   return block;
 }
 
-std::size_t Blocks::count() const {
-  std::size_t sum = 0;
-  for (const Block& block : blocks_) sum += block.count;
-  return sum;
-}
-
 void Blocks::allocate() {
   std::size_t values = 8, integers = 0, bytes = 0;
   for (const Block& block : blocks_) {

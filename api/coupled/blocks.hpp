@@ -131,7 +131,6 @@ class Blocks {
   // Copies impulses, states and status back to the lanes they were selected from.
   void give_back(Blocks& to) const;
 
-  std::size_t count() const;  // of contacts
   // Of all columns.
   std::size_t bytes() const { return sizeof(double) * size_; }
   std::vector<Block>& list() { return blocks_; }

@@ -14,10 +14,10 @@ Progress Iterations::run(Blocks& blocks, Progress progress, bool& stalled) {
     const std::uint32_t most = progress.limits.most;
     const Outcome outcome = conjugate(blocks, progress, most <= few ? most : first_conjugate);
     if (outcome == Outcome::spent && most >= least_few && most <= few && !ranks_.any())
-      solve_islands(blocks, progress, stalled, small_island);
+      solve_islands(blocks, progress, stalled);
     if (outcome != Outcome::stalled) break;
     // A contact that came within reach meanwhile: all of it again, from here.
-    if (solve_islands(blocks, progress, stalled, blocks.count()) != Outcome::solved) return progress;
+    if (solve_islands(blocks, progress, stalled) != Outcome::solved) return progress;
     if (!ranks_.any_rank(sweep_.wake(blocks))) return progress;
   }
   stalled = stalled || progress.has_stalled();
@@ -231,9 +231,9 @@ Outcome Iterations::take_turns(Blocks& blocks, Progress& progress, Best& best) {
 }
 
 // Whether each plain iteration adds the same impulses again, which move no body: laws that push each other
-// up. Where r = f(v) never rises with v, no velocity suits them all: for the growth d, sum d.v has one value
-// for all velocities of the bodies, and the one that laws ask for is larger. That holds along normals and for
-// bonds, not along a slip, whose limit rises with the normal impulse.
+// up, along normals or in bonds. If r = f(v) never rises with v, no velocity suits them all: for the growth
+// d, sum d.v has one value for all velocities of the bodies, and the laws ask for a larger one. A tie that
+// does no positive work is no such law, so growth alone proves nothing.
 bool Iterations::grow_without_end(Blocks& blocks, Progress& progress) {
   constexpr std::uint32_t most = 50;
   constexpr double steady = 1e-22, still = 1e-11, large = 1e-3;
@@ -393,8 +393,8 @@ Outcome Iterations::solve_directly(Blocks& blocks, Progress& progress) {
   return outcome;
 }
 
-// An island that is solved in its own scale is left alone, and so is one of more contacts than `largest`.
-Outcome Iterations::solve_islands(Blocks& blocks, Progress& progress, bool& stalled, std::size_t largest) {
+// An island that is solved in its own scale is left alone, and with few iterations so is a large one.
+Outcome Iterations::solve_islands(Blocks& blocks, Progress& progress, bool& stalled) {
   const bool is_direct = progress.limits.most <= few;
   if (!ranks_.any()) islands_.find(blocks, problem_);
   if (islands_.count() == 0 && !ranks_.any()) return Outcome::stalled;
@@ -409,7 +409,8 @@ Outcome Iterations::solve_islands(Blocks& blocks, Progress& progress, bool& stal
   for (std::int32_t island = 0; island < islands_.count(); ++island) {
     Progress& own = islands[static_cast<std::size_t>(island)];
     const double solved = is_direct ? std::max(own.limits.tolerance, far_off) : own.limits.tolerance;
-    if (own.residual() > solved && islands_.lanes(island).size() <= largest) {
+    const bool is_large = is_direct && islands_.lanes(island).size() > small_island;
+    if (own.residual() > solved && !is_large) {
       island_.select(blocks, islands_.lanes(island));
       const Outcome outcome = is_direct ? solve_directly(island_, own) : solve_island(island_, own);
       is_solved = outcome == Outcome::solved && is_solved;

@@ -58,7 +58,7 @@ class Iterations {
   // One plain iteration, the same on all ranks.
   void iterate(Blocks& blocks, Progress& progress, const Sweep::Conjugate& conjugate = {});
   Outcome conjugate(Blocks& blocks, Progress& progress, std::uint32_t most);
-  Outcome solve_islands(Blocks& blocks, Progress& progress, bool& stalled, std::size_t largest);
+  Outcome solve_islands(Blocks& blocks, Progress& progress, bool& stalled);
   Outcome solve_directly(Blocks& blocks, Progress& progress);
   Outcome solve_island(Blocks& blocks, Progress& progress);
   Outcome take_turns(Blocks& blocks, Progress& progress, Best& best);
