@@ -54,17 +54,8 @@ struct Assembly {
     status.assign(count, ILAW_BROKEN);
     velocity = v;
     std::vector<double> spin(v.size()), state(law.info().state_size * count + 1), still(v.size());
-    const auto size = static_cast<std::int64_t>(law.info().state_size);
-    ilaw_batch batch{};
-    batch.struct_size = sizeof batch;
-    batch.node_count = static_cast<std::int64_t>(count);
-    batch.time = batch.velocity_step = batch.position_step = 1e-3;
-    batch.gap = ilaw::input(&gap, 0, 0);
-    batch.area = ilaw::input(&area, 0, 0);
-    batch.normal = ilaw::input(normal.data(), 3, 1);
-    batch.state_in = ilaw::input(state.data(), size, 1);
-    batch.state_out = ilaw::output(state.data(), size, 1);
-    batch.impulse = ilaw::output(impulse.data(), 3, 1);
+    ilaw_batch batch =
+        coupled_scene::batch_of(law, count, 1e-3, gap, area, normal.data(), state, impulse.data());
     batch.status = status.data();
     batch.status_stride = 1;
     law.initialise(batch);

@@ -40,6 +40,24 @@ inline ilaw::interface create(const std::string& name, std::uint32_t form,
   return {ilaw::library(ILAW_PLUGIN_FOLDER "/" + name + ".so"), "", setup};
 }
 
+// Contacts with one gap and area, whose other arrays stand contact by contact.
+inline ilaw_batch batch_of(const ilaw::interface& law, std::size_t count, double step, const double& gap,
+                           const double& area, const double* normal, std::vector<double>& state,
+                           double* impulse) {
+  const auto states = static_cast<std::int64_t>(law.info().state_size);
+  ilaw_batch batch{};
+  batch.struct_size = sizeof batch;
+  batch.node_count = static_cast<std::int64_t>(count);
+  batch.time = batch.velocity_step = batch.position_step = step;
+  batch.gap = ilaw::input(&gap, 0, 0);
+  batch.area = ilaw::input(&area, 0, 0);
+  batch.normal = ilaw::input(normal, 3, 1);
+  batch.state_in = ilaw::input(state.data(), states, 1);
+  batch.state_out = ilaw::output(state.data(), states, 1);
+  batch.impulse = ilaw::output(impulse, 3, 1);
+  return batch;
+}
+
 // Equal spheres with rotation, and contacts between them and with walls, all of one law.
 struct Scene {
   explicit Scene(ilaw::interface law_of_all, std::size_t count)
