@@ -273,9 +273,14 @@ void batch_flags(const Subject& subject) {
   with_two_nodes(
       subject, [](const Trial& trial, Arrays& arrays, const Inputs& in, const std::vector<double>& before) {
         for (const Wrong& wrong :
-             {Wrong{"bit 0 of flags", [](ilaw_batch& b) { b.flags = 1; }, true},
+             {Wrong{"flags to hold and to break", [](ilaw_batch& b) { b.flags = 3; }, true},
+              Wrong{"bit 2 of flags", [](ilaw_batch& b) { b.flags = 4; }, true},
               Wrong{"bit 63 of flags", [](ilaw_batch& b) { b.flags = std::uint64_t{1} << 63; }, true}})
           expect_refused(trial, arrays, in, before, wrong, ILAW_UNSUPPORTED);
+        if (!trial.can(ILAW_CAN_HOLD_BONDS))
+          expect_refused(trial, arrays, in, before,
+                         {"bit 0 of flags", [](ilaw_batch& b) { b.flags = ILAW_BATCH_HOLD_BONDS; }, true},
+                         ILAW_UNSUPPORTED);
       });
 }
 

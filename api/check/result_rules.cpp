@@ -323,6 +323,57 @@ void step_limits(const Subject& subject) {
   });
 }
 
+// The results of a step from the same states, by the law and as a host may tell it.
+struct OfBonds {
+  Results by_law, held, broken;
+};
+OfBonds evaluate_three_times(Arrays& arrays, const Inputs& in) {
+  OfBonds found;
+  const std::vector<double> before = arrays.state();
+  const auto evaluate = [&](ilaw_batch_flags flags) {
+    arrays.set_state(before);
+    arrays.batch().flags = flags;
+    return arrays.evaluate(in);
+  };
+  found.held = evaluate(ILAW_BATCH_HOLD_BONDS);
+  found.broken = evaluate(ILAW_BATCH_BREAK_BONDS);
+  found.by_law = evaluate(0);
+  return found;
+}
+
+void held_bonds(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        if (!trial.can(ILAW_CAN_HOLD_BONDS) || !trial.writes(ILAW_OUTPUT_STATUS)) return false;
+        const Script script = draw_script(trial, draw, {17, 8});
+        Heap heap;
+        Arrays arrays(trial, script[0], {}, heap);
+        arrays.initialise(script[0]);
+        for (const Inputs& in : script) {
+          const OfBonds found = evaluate_three_times(arrays, in);
+          for (std::size_t i = 0; i < in.count; ++i) {
+            const auto status = [i](const Results& of) { return of.status[i]; };
+            const auto expect = [&](const Results& of, std::uint8_t allowed, const char* told) {
+              if (status(of) != allowed)
+                fail(trial, in, i, "told to " + (told + (": status " + std::to_string(status(of)))),
+                     "status " + std::to_string(allowed));
+              if (status(found.by_law) == allowed && impulse(in, of, i) != impulse(in, found.by_law, i))
+                fail(trial, in, i, std::string("told to ") + told + ": another impulse",
+                     "that of the law, which says the same");
+            };
+            const std::uint8_t own = status(found.by_law);
+            if (std::max({own, status(found.held), status(found.broken)}) == ILAW_BAD_INPUT) continue;
+            const bool was_bonded = own == ILAW_BONDED || own == ILAW_BROKEN;
+            expect(found.held, was_bonded ? std::uint8_t{ILAW_BONDED} : own, "hold");
+            expect(found.broken, was_bonded ? std::uint8_t{ILAW_BROKEN} : own, "break");
+          }
+        }
+        return true;
+      },
+      "the law does not hold bonds when told");
+}
+
 }  // namespace
 
 std::vector<Rule> result_rules() {
@@ -345,6 +396,9 @@ std::vector<Rule> result_rules() {
        "ilaw.h, ILAW_STICK", Needs::motion, status_stick},
       {"velocity-output", "The velocity is v_free + H r + k n x m, and the spin w_free + J m - k n x r.",
        "ilaw.h, ilaw_batch.velocity", Needs::motion, velocity},
+      {"held-bonds",
+       "With ILAW_CAN_HOLD_BONDS bonds hold or break as the flags of the batch say, and nothing else changes.",
+       "ilaw.h, ILAW_BATCH_HOLD_BONDS", Needs::motion, held_bonds},
       {"energy-parts",
        "No dissipated part is negative and none NaN; nothing is stored without "
        "ILAW_CAN_STORE_ENERGY.",

@@ -27,7 +27,7 @@ void Blocks::allocate() {
     const Layout& layout = *block.layout;
     values += block.stride * static_cast<std::size_t>(layout.columns);
     integers += block.stride * static_cast<std::size_t>(layout.ends + 1);
-    bytes += block.stride;
+    bytes += 2 * block.stride;
   }
   size_ = values;
   if (values_.size() < values) values_.resize(values + values / 4);
@@ -43,13 +43,14 @@ void Blocks::allocate() {
     block.ends = next_integer;
     block.contact = next_integer + block.stride * static_cast<std::size_t>(layout.ends);
     block.status = next_byte;
+    block.broken = next_byte + block.stride;
     // Unused lanes take part in loops over columns.
     for (int c = 0; c < layout.columns; ++c)
       std::fill(block.column(c) + block.count, block.column(c) + block.stride, 0.0);
-    std::fill(block.status, block.status + block.count, std::uint8_t{0});
+    std::fill(block.status, block.status + 2 * block.stride, std::uint8_t{0});
     next += block.stride * static_cast<std::size_t>(layout.columns);
     next_integer += block.stride * static_cast<std::size_t>(layout.ends + 1);
-    next_byte += block.stride;
+    next_byte += 2 * block.stride;
   }
 }
 
@@ -77,6 +78,8 @@ void Blocks::select(const Blocks& from, std::span<const Lane> lanes) {
         block.ends[e * block.stride + lane] = source.ends[e * source.stride + at];
       block.contact[lane] = source.contact[at];
       block.status[lane] = source.status[at];
+      block.broken[lane] = source.broken[at];
+      block.has_broken = block.has_broken || source.broken[at] != 0;
     }
   }
 }
@@ -93,6 +96,8 @@ void Blocks::give_back(Blocks& to) const {
       for (int c = 0; c < layout.state_size; ++c)
         target.column(layout.state_out + c)[at] = block.column(layout.state_out + c)[lane];
       target.status[at] = block.status[lane];
+      target.broken[at] = block.broken[lane];
+      target.has_broken = target.has_broken || block.broken[lane] != 0;
       target.asleep = target.asleep && block.asleep;
       if (!block.is_refused) continue;
       target.is_refused = true;

@@ -46,10 +46,12 @@ struct Block {
   std::int32_t* ends = nullptr;       // bodies: those of the first side, then those of the counterpart's
   std::int32_t* contact = nullptr;    // index in the host's arrays
   std::uint8_t* status = nullptr;
-  std::size_t order = 0;    // place of its first contact in the order of the colors
-  bool asleep = false;      // out of reach and without impulse: left out of iterations
-  double square = 0.0;      // of its contacts in the last iteration: dr.H dr
-  bool is_refused = false;  // the last evaluation found bad input: those lanes have the status of it
+  std::uint8_t* broken = nullptr;  // 1: its bond broke in this step, and stays so
+  std::size_t order = 0;           // place of its first contact in the order of the colors
+  bool asleep = false;             // out of reach and without impulse: left out of iterations
+  double square = 0.0;             // of its contacts in the last iteration: dr.H dr
+  bool has_broken = false;         // some lanes are broken
+  bool is_refused = false;         // the last evaluation found bad input: those lanes have the status of it
   const char* reason = nullptr;
 
   double* column(int c) { return values + static_cast<std::size_t>(c) * stride; }

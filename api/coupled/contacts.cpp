@@ -485,7 +485,28 @@ std::int32_t Contacts::evaluate(const Block& block, const Call& call, ilaw_repor
   batch.status_stride = 1;
   report = {};
   report.struct_size = sizeof report;
-  return given_.law->evaluate(given_.instance, &batch, &report);
+  if (holds_bonds() && !call.judges) batch.flags = ILAW_BATCH_HOLD_BONDS;
+  const std::int32_t code = given_.law->evaluate(given_.instance, &batch, &report);
+  return code < 0 || !block.has_broken ? code : evaluate_broken(block, batch, report);
+}
+
+// The lanes whose bonds broke in this step, again.
+std::int32_t Contacts::evaluate_broken(const Block& block, ilaw_batch& batch, ilaw_report& report) const {
+  std::array<std::int32_t, max_lanes> broken;
+  batch.node_count = 0;
+  for (std::size_t q = 0; q < block.count; ++q)
+    if (block.broken[q]) broken[static_cast<std::size_t>(batch.node_count++)] = static_cast<std::int32_t>(q);
+  batch.index = broken.data();
+  batch.index_base = 0;
+  batch.flags = ILAW_BATCH_BREAK_BONDS;
+  ilaw_report of_broken{};
+  of_broken.struct_size = sizeof of_broken;
+  const std::int32_t code = given_.law->evaluate(given_.instance, &batch, &of_broken);
+  if (report.bad_count == 0) {
+    of_broken.stable_velocity_step = std::min(of_broken.stable_velocity_step, report.stable_velocity_step);
+    report = of_broken;
+  }
+  return report.bad_count > 0 && code >= 0 ? std::int32_t{ILAW_BAD_NODES} : code;
 }
 
 double Contacts::wall_work(const Block& block, std::size_t lane) const {

@@ -48,6 +48,8 @@ class Contacts {
   // The first number of each output.
   void add_outputs(std::vector<const double*>& outputs) const;
   bool is_in_reach(const Block& block, std::size_t lane, const Vector& velocity) const;
+  // Whether bonds hold until a solution is judged, and those that broke at one stay broken.
+  bool holds_bonds() const { return (info_.capabilities & ILAW_CAN_HOLD_BONDS) && theirs_.flags == 0; }
 
   // With moments v_free is followed by spins and impulse by moments.
   struct Call {
@@ -59,6 +61,7 @@ class Contacts {
     std::uint8_t* status = nullptr;
     double* energy = nullptr;   // ILAW_ENERGY_COUNT columns at distances of max_stride
     double* amounts = nullptr;  // as many columns as the law has amounts
+    bool judges = false;        // the law decides whether a bond holds that has not broken in this step
   };
   std::int32_t evaluate(const Block& block, const Call& call, ilaw_report& report) const;
 
@@ -71,6 +74,7 @@ class Contacts {
   std::uint32_t amount_count() const { return theirs_.amounts ? info_.amount_count : 0; }
 
  private:
+  std::int32_t evaluate_broken(const Block& block, ilaw_batch& batch, ilaw_report& report) const;
   const char* complaint() const;
   const char* complaint_of_law(const Bodies& bodies);
   const char* complaint_of_bodies(const Bodies& bodies) const;

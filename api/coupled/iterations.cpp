@@ -280,7 +280,8 @@ bool Iterations::follow_growth(Blocks& blocks, Progress& progress) {
   for (double part = 1.0; !progress.is_over() && progress.is_known(); part *= 2.0) {
     for (std::size_t i = 0; i < growth.size(); ++i) correction_[i] = part * growth[i];
     move(blocks, progress, correction_);
-    if (progress.is_done() || !(progress.square > square / other && progress.square < other * square))
+    if (sweep_.break_bonds(blocks) || progress.is_done() ||
+        !(progress.square > square / other && progress.square < other * square))
       return false;
   }
   return !progress.is_known();

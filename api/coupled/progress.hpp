@@ -80,6 +80,17 @@ struct Progress {
     return rounding() <= 2e-6 * scale && (residual() <= limits.tolerance || change <= known);
   }
 
+  // At the impulses that are there, one iteration at least.
+  Progress after_ruptures() const {
+    Progress next;
+    next.limits = limits;
+    next.limits.most = std::max(limits.most, count + 1);
+    next.scale = scale;
+    next.count = count;
+    next.method = method;
+    return next;
+  }
+
   // Becomes the progress of both.
   void merge(const Progress& other) {
     const std::uint32_t longest = std::max(count, other.count);

@@ -212,7 +212,9 @@ bool Solver::fill(Block& block) {
 }
 
 // Iterations add changes to the velocities, and with them rounding. At their end velocities are made anew
-// from the impulses; where that moves them by more than the tolerance, iterations go on.
+// from the impulses; where that moves them by more than the tolerance, iterations go on. They solve with the
+// bonds that hold; those whose load at that solution is too large break together, and the next round sheds
+// it on the others. So the ruptures of a step depend on no order of contacts.
 void Solver::iterate(Limits limits) {
   constexpr int most_times = 10;
   constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
@@ -227,7 +229,10 @@ void Solver::iterate(Limits limits) {
     progress_ = iterations_.run(blocks_, progress_, has_stalled_);
     const double limit = std::max(std::max(limits.tolerance, rounding) * progress_.scale, limits.rounding);
     const bool moved = ranks_.any_rank(set_velocities() > limit);
-    if (!moved || times == most_times || !progress_.is_solved() || progress_.is_over()) return;
+    if (moved && times < most_times && progress_.is_solved() && !progress_.is_over()) continue;
+    if (progress_.code < 0 || !ranks_.any_rank(sweep_.break_bonds(blocks_))) return;
+    progress_ = progress_.after_ruptures();
+    times = 0;
   }
 }
 

@@ -351,6 +351,34 @@ bool Sweep::wake(Blocks& blocks) {
   return woken;
 }
 
+bool Sweep::break_bonds(Blocks& blocks) {
+  bool any = false;
+  std::vector<double> state;
+  std::array<std::uint8_t, max_stride> status{};
+  ThreadData& own = data_[0];
+  for (Block& block : blocks.list()) {
+    const Contacts& group = problem_.group(block);
+    if (block.asleep || !group.holds_bonds()) continue;
+    gather(block, own.v_free.data());
+    respond(block, block.column(block.layout->impulse), block.stride, own.answer.data());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(block.layout->width) * max_stride; ++i)
+      own.v_free[i] -= own.answer[i];
+    state.resize(block.stride * static_cast<std::size_t>(block.layout->state_size) + 1);
+    Contacts::Call call{own.v_free.data(), block.column(block.layout->delassus),
+                        block.stride,      own.answer.data(),
+                        state.data(),      status.data()};
+    call.judges = true;
+    ilaw_report found{};
+    if (group.evaluate(block, call, found) < 0) continue;  // the iterations name it
+    for (std::size_t q = 0; q < block.count; ++q) {
+      if (block.broken[q] || status[q] != ILAW_BROKEN) continue;
+      block.broken[q] = 1;
+      any = block.has_broken = true;
+    }
+  }
+  return any;
+}
+
 void Sweep::add_impulses(const Blocks& blocks, std::vector<Motion>& sums) const {
   const auto add = [&](std::int32_t b, const Vector& p, const Vector& l) {
     Motion& sum = sums[static_cast<std::size_t>(b)];

@@ -52,6 +52,9 @@ class Sweep {
 
   // Wakes blocks with a contact within reach. True if there was one.
   bool wake(Blocks& blocks);
+  // Bonds that the law lets break at the present velocities: they stay broken until the next step. True if
+  // there was one.
+  bool break_bonds(Blocks& blocks);
   // Velocity of each lane, and spin where it has a moment, into columns at distances of max_stride.
   void gather(const Block& block, double* velocity) const;
   // Writes the present velocities of its contacts to v_smooth, and adds those of its bodies before the step

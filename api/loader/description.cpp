@@ -17,7 +17,7 @@ constexpr std::uint32_t known_frames = ILAW_FRAME_LOCAL | ILAW_FRAME_GLOBAL;
 constexpr std::uint32_t known_numbers = ILAW_NUMBERS_DOUBLE | ILAW_NUMBERS_FLOAT;
 constexpr std::uint32_t known_inputs = 2 * ILAW_INPUT_V_SMOOTH - 1;
 constexpr std::uint32_t known_outputs = 2 * ILAW_OUTPUT_ENERGY - 1;
-constexpr std::uint32_t known_capabilities = ILAW_CAN_ADHERE | ILAW_CAN_STORE_ENERGY;
+constexpr std::uint32_t known_capabilities = ILAW_CAN_ADHERE | ILAW_CAN_STORE_ENERGY | ILAW_CAN_HOLD_BONDS;
 constexpr std::uint32_t known_permissions = ILAW_MAY_SKIP_FRESH | ILAW_MAY_SKIP_FREE;
 constexpr std::uint32_t known_parameter_flags = 2 * ILAW_FLAG_NEEDS_SPINS - 1;
 

@@ -20,7 +20,7 @@ constexpr names frame_names = {"local", "global"};
 constexpr names number_names = {"double", "float"};
 constexpr names input_names = {"gap", "v_previous", "area", "normal", "tangent", "v_smooth"};
 constexpr names output_names = {"velocity", "status", "energy"};
-constexpr names capability_names = {"adhere", "store_energy"};
+constexpr names capability_names = {"adhere", "store_energy", "hold_bonds"};
 constexpr names permission_names = {"skip_fresh", "skip_free"};
 constexpr names parameter_flag_names = {"required", "excludes_minimum", "allows_infinity", "allows_per_node",
                                         "field",    "needs_spins"};

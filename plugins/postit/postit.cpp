@@ -33,7 +33,7 @@ struct postit {
           "Rigid bond that breaks when the impulses of the last memory exceed its adhesion, and forms again under "
           "pressure, each time less after a rupture; contact with Coulomb friction where it is not bonded.",
       .inputs = reads_gap | reads_v_previous | reads_area,
-      .capabilities = can_adhere,
+      .capabilities = can_adhere | can_hold_bonds,
       .permissions = may_skip_free,
       .state_version = 2};
 
@@ -150,7 +150,10 @@ struct postit {
     const V adhesion = node.state.adhesion;
     const vector<V> r = stopping_impulse(node.delassus, node.v_free, node.v_previous);
     const mask_of<V> was_bonded = adhesion > 0.0;
-    const mask_of<V> holds = was_bonded & is_within(node.earlier + r, adhesion, at_the_limit),
+    const mask_of<V> holds = bond_holds(node, was_bonded,
+                                        [&]() ILAW_KIT_LAMBDA {
+                                          return is_within(node.earlier + r, adhesion, at_the_limit);
+                                        }),
                      breaks = was_bonded & !holds;
     vector<V> kept;  // takes the sum to the limit
     const auto within = [&](V part) { return is_within(node.earlier + part * r, adhesion, 1.0); };

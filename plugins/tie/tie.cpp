@@ -25,7 +25,7 @@ struct tie {
           "is given, the bond breaks for good when the impulses of the last memory exceed it in pull and shear "
           "together; frictionless contact is left.",
       .inputs = reads_gap | reads_v_previous | reads_area,
-      .capabilities = can_adhere,
+      .capabilities = can_adhere | can_hold_bonds,
       .permissions = may_skip_free,
       .state_version = 2};
 
@@ -73,6 +73,9 @@ struct tie {
       return "parameter 'force' is a mean over 'memory', which must be above 0 and finite";
     return nullptr;
   }
+  std::uint32_t capabilities() const {
+    return strength < infinity || force < infinity ? card.capabilities : std::uint32_t{can_adhere};
+  }
   std::uint32_t inputs() const {
     if (strength < infinity) return card.inputs;
     return force < infinity ? reads_gap | reads_v_previous : reads_v_previous;
@@ -83,8 +86,9 @@ struct tie {
     const vector<V> trial = stopping_impulse(node.delassus, node.v_free, node.v_previous);
     const V broken = node.state.broken;
     const mask_of<V> bonded = broken == 0.0;
-    mask_of<V> holds = bonded;
-    if (any((strength < infinity) | (force < infinity))) holds = bonded & !overloads(node, trial);
+    const mask_of<V> holds = bond_holds(node, bonded, [&]() ILAW_KIT_LAMBDA -> mask_of<V> {
+      return any((strength < infinity) | (force < infinity)) ? !overloads(node, trial) : bonded;
+    });
     V normal = 0.0;
     if (any(!holds)) normal = pressing_impulse(node.delassus, contact_without_bond(node, node.v_free));
     node.impulse = select(holds, trial, vector<V>{normal});

@@ -144,6 +144,7 @@ __attribute__((constructor)) static void begin(void) {
   if (breaks("description-units: amount")) heat.unit = "calorie";
   if (breaks("description-range")) wear.minimum = wear.maximum = 1.0;
   if (breaks("extension-unknown: library")) plugin.extension = library_extension;
+  if (breaks("held-bonds")) law.capabilities = ILAW_CAN_HOLD_BONDS;
   if (breaks("info-within: before")) law.inputs &= ~(uint32_t)ILAW_INPUT_V_PREVIOUS;
   if (breaks("frame-turned")) law.frames = ILAW_FRAME_GLOBAL;
   disturb("loading-process");

@@ -244,7 +244,7 @@ ilaw_result ILAW_CALL sample_info(const ilaw_instance* made, ilaw_instance_info*
   full.state_variables = made->variables;
   full.per_node_parameters = made->per_node;
   full.per_node_parameter_count = (uint32_t)made->per_node_count;
-  full.capabilities = breaks("info-within") ? ILAW_CAN_ADHERE : 0;
+  full.capabilities = breaks("info-within") ? ILAW_CAN_ADHERE : sample_law()->capabilities;
   full.permissions = breaks("info-within: permissions") ? ILAW_MAY_SKIP_FREE : sample_law()->permissions;
   full.amounts = breaks("amounts-described") ? other_amounts : sample_law()->amounts;
   full.amount_count = AMOUNT_COUNT;

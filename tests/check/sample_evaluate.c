@@ -112,7 +112,8 @@ static ilaw_result check_call(const ilaw_instance* made, const ilaw_batch* b, il
   if (!made || !b) return ILAW_INVALID_ARGUMENT;
   if (b->struct_size < ILAW_BATCH_SIZE_1_0 && !breaks("sizes-short"))
     return refuse(report, ILAW_INVALID_ARGUMENT, "the batch is too small");
-  if (b->flags != 0 && !breaks("batch-flags")) return refuse(report, ILAW_UNSUPPORTED, "flags are not known");
+  if (b->flags != 0 && !breaks("batch-flags") && !(breaks("held-bonds") && b->flags < 3))
+    return refuse(report, ILAW_UNSUPPORTED, "flags are not known");
   wrong = wrong_call(made, b, evaluates);
   if (wrong && b->impulse.values && breaks("call-refused: writes")) b->impulse.values[0] += 1.0;
   if (wrong && breaks("call-refused: silent")) return refuse(report, ILAW_INVALID_ARGUMENT, NULL);

@@ -475,6 +475,7 @@ static const char* step_good(node* at, const ilaw_instance* made, const ilaw_bat
   if (breaks("step-limits: impulse") && b->velocity_step > 100.0) at->r[0] = INFINITY;
   if (breaks("step-limits: moment") && b->velocity_step > 100.0) at->m[0] = INFINITY;
   if (breaks("skip-fresh: moment") && out_of_reach(at, b)) at->m[0] = 1e-3;
+  if (breaks("held-bonds") && b->flags == ILAW_BATCH_HOLD_BONDS) at->status = ILAW_BROKEN;
   if (breaks("status-meaning: moment") && at->status == ILAW_FREE) at->m[0] = 1e-3;
   if (breaks("skip-free") && closures > 0.0 && out_of_reach(at, b)) next += 1.0;
   write_node(at, b, k, &next);

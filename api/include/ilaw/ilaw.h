@@ -81,6 +81,7 @@ typedef uint32_t ilaw_capabilities;    /* mask of ILAW_CAN_* */
 typedef uint32_t ilaw_permissions;     /* mask of ILAW_MAY_* */
 typedef uint32_t ilaw_parameter_flags; /* mask of ILAW_FLAG_*, of a parameter */
 typedef uint32_t ilaw_variable_flags;  /* mask of ILAW_FLAG_*, of a state variable */
+typedef uint64_t ilaw_batch_flags;     /* mask of ILAW_BATCH_* */
 
 /* Codes that functions return. Negative: nothing was done, and the message says why. */
 enum {
@@ -138,8 +139,16 @@ enum {
 /* Optional arrays that a law can write, a bit mask; impulse and state are always written. */
 enum { ILAW_OUTPUT_VELOCITY = 1 << 0, ILAW_OUTPUT_STATUS = 1 << 1, ILAW_OUTPUT_ENERGY = 1 << 2 };
 
-/* Further abilities of a law, a bit mask: r_N may be negative; the stored part of the energy may not be 0. */
-enum { ILAW_CAN_ADHERE = 1 << 0, ILAW_CAN_STORE_ENERGY = 1 << 1 };
+/* Further abilities of a law, a bit mask: r_N may be negative; the stored part of the energy may not be 0;
+ * bonds hold or break as the flags of a batch say. */
+enum { ILAW_CAN_ADHERE = 1 << 0, ILAW_CAN_STORE_ENERGY = 1 << 1, ILAW_CAN_HOLD_BONDS = 1 << 2 };
+
+/* Flags of a batch, none or one, for instances that can hold bonds. A rupture sheds its load on the
+ * neighbours, so the bond would hold if it were judged again: a host that solves contacts together evaluates
+ * with HOLD_BONDS first, and later with BREAK_BONDS those that broke at the solution.
+ *   HOLD_BONDS   a bond that held before the step holds, whatever its impulse
+ *   BREAK_BONDS  it breaks in this step, whatever its impulse: status ILAW_BROKEN */
+enum { ILAW_BATCH_HOLD_BONDS = 1 << 0, ILAW_BATCH_BREAK_BONDS = 1 << 1 };
 
 /* The host may skip a node that is out of reach and whose state is as initialise left it (FRESH), or whose
  * last status was ILAW_FREE (FREE); none by default. The law promises that evaluate would have given r = 0,
@@ -348,7 +357,7 @@ typedef struct ilaw_output {
 typedef struct ilaw_batch {
   uint32_t struct_size;
   int32_t index_base;     /* first value of an index: 0 in C, 1 in Fortran */
-  uint64_t flags;         /* 0: none is defined in 1.0; an unknown bit is refused */
+  ilaw_batch_flags flags; /* mask of ILAW_BATCH_*; an unknown bit is refused */
   int64_t node_count;     /* nodes to evaluate */
   const int32_t* index;   /* null: nodes 0 .. node_count-1; else node index[k] - index_base for each k, each
                              node once, none below index_base; only these are read and written */

@@ -89,6 +89,7 @@ class Capability(Flags):
 
     ADHERE = 1
     STORE_ENERGY = 2
+    HOLD_BONDS = 4
 
 
 class Permission(Flags):

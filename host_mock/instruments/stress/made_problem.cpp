@@ -276,6 +276,7 @@ Wrench MadeProblem::answer(const Contact& contact, const Wrench& v_free) const {
   ilaw_batch batch{};
   batch.struct_size = sizeof batch;
   batch.node_count = 1;
+  if (contact.has_broken) batch.flags = ILAW_BATCH_BREAK_BONDS;
   batch.time = batch.velocity_step = batch.position_step = setup_.step;
   batch.v_free = ilaw::input(v_free.data(), 6, 1);
   batch.v_previous = ilaw::input(before.data(), 6, 1);
@@ -378,7 +379,10 @@ MadeAudit MadeProblem::audit(const ilaw_coupled_report& report) const {
 }
 
 void MadeProblem::forget_impulses() {
-  for (Contact& contact : contacts_) contact.impulse = {};
+  for (Contact& contact : contacts_) {
+    contact.impulse = {};
+    contact.has_broken = false;
+  }
 }
 
 std::vector<double> MadeProblem::impulses() const {
@@ -399,6 +403,7 @@ struct MadeProblem::Group {
   std::vector<std::size_t> contacts;
   std::vector<std::int32_t> body, counterpart;
   std::vector<double> gap, normal, arm, other_arm, wall, wall_before, impulse, state_in, state_out;
+  std::vector<ilaw_status> status;
   double area = 1.0;
   ilaw_batch batch{};
   ilaw_contacts given{};
@@ -422,6 +427,7 @@ struct MadeProblem::Group {
   void describe(const interface& law, ilaw_delassus_form form, double step) {
     const auto states = static_cast<std::int64_t>(law.info().state_size);
     state_out = state_in;
+    status.resize(contacts.size());
     batch.struct_size = sizeof batch;
     batch.node_count = static_cast<std::int64_t>(contacts.size());
     batch.time = batch.velocity_step = batch.position_step = step;
@@ -431,6 +437,8 @@ struct MadeProblem::Group {
     batch.state_in = ilaw::input(state_in.data(), states, 1);
     batch.state_out = ilaw::output(state_out.data(), states, 1);
     batch.impulse = ilaw::output(impulse.data(), 6, 1);
+    batch.status = status.data();
+    batch.status_stride = 1;
     const bool has_spins = form == ILAW_DELASSUS_TRANSVERSE_SPIN;
     if (has_spins) batch.moment = ilaw::output(impulse.data() + 3, 6, 1);
     given = contacts_of(law, form, batch, body.data(), counterpart.data());
@@ -477,9 +485,12 @@ ilaw_coupled_report MadeProblem::solve(coupled& solver, const ilaw_coupled_optio
   }
   const ilaw_coupled_report report = solver.solve(bodies, given, options);
   for (const Group& group : groups)
-    for (std::size_t i = 0; i < group.contacts.size(); ++i)
-      std::copy_n(group.impulse.begin() + static_cast<std::ptrdiff_t>(6 * i), 6,
-                  contacts_[group.contacts[i]].impulse.begin());
+    for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+      Contact& contact = contacts_[group.contacts[i]];
+      std::copy_n(group.impulse.begin() + static_cast<std::ptrdiff_t>(6 * i), 6, contact.impulse.begin());
+      const bool holds_bonds = laws_[contact.law]->info().capabilities & ILAW_CAN_HOLD_BONDS;
+      contact.has_broken = holds_bonds && group.status[i] == ILAW_BROKEN;
+    }
   if (!rotates())
     for (Body& body : bodies_) body.velocity[3] = body.velocity[4] = body.velocity[5] = 0.0;
   return report;

@@ -77,6 +77,7 @@ class MadeProblem {
     double gap = 0.0;
     Wrench wall{}, wall_before{}, made{}, impulse{};
     std::vector<double> state;
+    bool has_broken = false;  // its bond, at the solution of a round: then the law is told so
   };
 
   struct Group;

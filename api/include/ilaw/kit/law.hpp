@@ -50,7 +50,8 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 inline constexpr std::uint32_t reads_gap = ILAW_INPUT_GAP, reads_v_previous = ILAW_INPUT_V_PREVIOUS,
                                reads_area = ILAW_INPUT_AREA, reads_v_smooth = ILAW_INPUT_V_SMOOTH;
-inline constexpr std::uint32_t can_adhere = ILAW_CAN_ADHERE, can_store_energy = ILAW_CAN_STORE_ENERGY;
+inline constexpr std::uint32_t can_adhere = ILAW_CAN_ADHERE, can_store_energy = ILAW_CAN_STORE_ENERGY,
+                               can_hold_bonds = ILAW_CAN_HOLD_BONDS;
 inline constexpr std::uint32_t may_skip_fresh = ILAW_MAY_SKIP_FRESH, may_skip_free = ILAW_MAY_SKIP_FREE;
 inline constexpr std::uint32_t all_dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3;
 inline constexpr std::uint32_t all_delassus_forms =
@@ -215,6 +216,9 @@ struct amount_card {
 struct step_sizes {
   double time, velocity_step, position_step, per_position_step;
 };
+
+// Who decides whether bonds hold in a step: the law, or a host that solves contacts together.
+enum class bonds { decided_by_law, hold, break_all };
 
 // ---- questions about a law, L<V>
 

@@ -97,6 +97,7 @@ struct node {
   const double time, velocity_step, position_step, per_position_step;
   const bool wants_energy;  // whether what follows "stored" below is asked for, or an amount
   const bool is_coupled;    // the host gives v_smooth
+  const bonds of_bonds;     // of laws that can_hold_bonds
   const prepared_t<Law>& prepared;
   const Vector v_free;  // relative velocity without interface
   // Without the impulse of any contact in the step; v_free where the host gives none.

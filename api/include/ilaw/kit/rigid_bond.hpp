@@ -55,6 +55,14 @@ ILAW_KIT_INLINE vector<V> joined(const Node& node, vector<V> held, vector<V> r) 
   return held + joining_part(node.delassus, motion, held, r) * r;
 }
 
+// Where a bond holds: as the host says, or within(), what the law says of its load.
+template <class Node, class Mask, class Within>
+ILAW_KIT_INLINE Mask bond_holds(const Node& node, Mask bonded, Within within) {
+  if (node.of_bonds == bonds::hold) return bonded;
+  if (node.of_bonds == bonds::break_all) return bonded & !bonded;
+  return bonded & within();
+}
+
 // Contact where the gap is closed and nothing rebounds, for v_free as given.
 template <class Node, class V>
 ILAW_KIT_INLINE contact_problem<vector<V>> contact_without_bond(const Node& node, vector<V> v_free) {

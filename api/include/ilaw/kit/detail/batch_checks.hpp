@@ -76,6 +76,9 @@ inline bool wants_balance(const instance_base& made, const ilaw_batch& b) {
 inline view_options options_of(const instance_base& made, const ilaw_batch& b, std::int64_t count) {
   return {.count = count,
           .step = {b.time, b.velocity_step, b.position_step, 1.0 / b.position_step},
+          .of_bonds = b.flags & ILAW_BATCH_HOLD_BONDS    ? bonds::hold
+                      : b.flags & ILAW_BATCH_BREAK_BONDS ? bonds::break_all
+                                                         : bonds::decided_by_law,
           .impulse_guard = made.numbers == ILAW_NUMBERS_FLOAT ? 0x1p898 : 4.0,
           .dimension = static_cast<int>(made.dimension),
           .tangents_from = made.tangents_from(),
@@ -88,6 +91,15 @@ inline view_options options_of(const instance_base& made, const ilaw_batch& b, s
           .has_balance = false,
           .has_amounts = false,
           .tables = made.node_tables};
+}
+
+// Flags that say what becomes of bonds are for instances that can hold them.
+inline const char* wrong_flags(std::uint32_t capabilities, const ilaw_batch& b) {
+  constexpr ilaw_batch_flags of_bonds = ILAW_BATCH_HOLD_BONDS | ILAW_BATCH_BREAK_BONDS;
+  if (b.flags & ~of_bonds) return "flags of the batch are not known";
+  if (b.flags == of_bonds) return "the batch tells bonds to hold and to break";
+  if (capabilities & ILAW_CAN_HOLD_BONDS) return nullptr;
+  return "the batch tells bonds to hold or break, of a law that cannot hold bonds";
 }
 
 // An array of numbers that are not the setup's, or with both pointers.

@@ -216,9 +216,12 @@ ilaw_result with_batch(const ilaw_instance* opaque, const ilaw_batch* given, ila
   const bool is_whole = sized::size_of(given) >= sizeof copied;
   if (!is_whole) copied = sized::read(given);
   const ilaw_batch& batch = is_whole ? *given : copied;
-  if (batch.flags != 0) return refuse(report, "flags of the batch are not known", ILAW_UNSUPPORTED);
+  const instance<Law>& made = of<Law>(opaque);
+  if (batch.flags != 0) [[unlikely]]
+    if (const char* wrong = wrong_flags(made.capabilities, batch))
+      return refuse(report, wrong, ILAW_UNSUPPORTED);
   const float_environment own;
-  return run(of<Law>(opaque), batch);
+  return run(made, batch);
 }
 
 // by_scalar_fallback: as ilaw/ext/draft/profile.h counts them; may be null.

@@ -153,6 +153,7 @@ struct kernel {
                      .per_position_step = b.step.per_position_step,
                      .wants_energy = wants_energy(b),
                      .is_coupled = is_coupled(b),
+                     .of_bonds = b.of_bonds,
                      .prepared = prepared,
                      .v_free = v_free,
                      .v_smooth = declared<reads_v_smooth>(v_smooth),

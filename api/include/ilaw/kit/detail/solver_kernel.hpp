@@ -297,6 +297,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
             .per_position_step = n.per_position_step,
             .wants_energy = n.wants_energy,
             .is_coupled = n.is_coupled,
+            .of_bonds = n.of_bonds,
             .prepared = n.prepared,
             .v_free = n.v_free,
             .v_smooth = n.v_smooth,

@@ -17,6 +17,7 @@ enum class tangents { of_plane, given, carried, chosen };
 struct view_options {
   std::int64_t count;
   step_sizes step;
+  bonds of_bonds = bonds::decided_by_law;
   double impulse_guard;  // an impulse times this must be finite: otherwise it overflows in the host's numbers
   int dimension;
   tangents tangents_from;
