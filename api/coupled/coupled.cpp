@@ -24,7 +24,14 @@ ilaw_result ILAW_CALL ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies
     return ILAW_INVALID_ARGUMENT;
   const ilaw_coupled_options asked = options ? sized::read(options) : ilaw_coupled_options{};
   if (asked.exchange && !sized::is_complete(asked.exchange)) return ILAW_INVALID_ARGUMENT;
+  if (asked.pool && !sized::is_complete(asked.pool)) return ILAW_INVALID_ARGUMENT;
   ilaw_coupled_report said{};
+  if (asked.pool && !asked.pool->run) {
+    said.bad_group = said.bad_contact = -1;
+    said.reason = "the function of the pool is null";
+    if (report) sized::write(report, said);
+    return ILAW_INVALID_ARGUMENT;
+  }
   if (asked.exchange && !(asked.exchange->sum_bodies && asked.exchange->largest && asked.exchange->sum)) {
     said.bad_group = said.bad_contact = -1;
     said.reason = "a function of the exchange is null";

@@ -12,6 +12,8 @@ inline constexpr std::uint32_t least<ilaw_bodies> = ILAW_BODIES_SIZE_1_0;
 template <>
 inline constexpr std::uint32_t least<ilaw_contacts> = ILAW_CONTACTS_SIZE_1_0;
 template <>
+inline constexpr std::uint32_t least<ilaw_threads> = ILAW_THREADS_SIZE_1_0;
+template <>
 inline constexpr std::uint32_t least<ilaw_exchange> = ILAW_EXCHANGE_SIZE_1_0;
 template <>
 inline constexpr std::uint32_t least<ilaw_coupled_options> = ILAW_COUPLED_OPTIONS_SIZE_1_0;

@@ -37,7 +37,7 @@ std::int32_t Solver::solve(const ilaw_bodies* bodies, const ilaw_contacts* const
                            std::int64_t group_count, const ilaw_coupled_options& options,
                            ilaw_coupled_report& report) {
   ranks_.use(options.exchange);
-  sweep_.use(std::clamp(options.threads, 1U, most_threads));
+  sweep_.use(std::clamp(options.threads, 1U, most_threads), options.pool);
   report.bad_group = report.bad_contact = report.worst_group = report.worst_contact = -1;
   report.stable_velocity_step = std::numeric_limits<double>::infinity();
   report.reason = complaint(options);

@@ -69,8 +69,9 @@ bool has_not_acted(const Block& block, std::size_t lane) {
 
 }  // namespace
 
-void Sweep::use(std::size_t threads) {
+void Sweep::use(std::size_t threads, const ilaw_threads* pool) {
   threads_ = threads;
+  team_.use(pool ? *pool : ilaw_threads{});
   data_.resize(threads);
   if (team_.size() > threads) team_.resize(threads);
 }

@@ -38,8 +38,8 @@ struct Change {
 class Sweep {
  public:
   explicit Sweep(Problem& problem) : problem_(problem) { use(1); }
-  // Blocks of a color are evaluated by this many threads, with the bits of one.
-  void use(std::size_t threads);
+  // Blocks of a color are evaluated by this many threads, with the bits of one; pool: whose they are.
+  void use(std::size_t threads, const ilaw_threads* pool = nullptr);
 
   // Extrapolation of the impulses before the iteration: r += beta d, d = beta d + (last change of r).
   struct Conjugate {

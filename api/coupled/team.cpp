@@ -7,15 +7,24 @@
 
 namespace ilaw::coupled {
 
-void Team::resize(std::size_t size) {
-  leave_parent();
-  if (size == asked_) return;
+void Team::end() {
   call_ = nullptr;
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
   if (others_)
     for (std::thread& thread : *others_) thread.join();
   others_.reset();
+}
+
+void Team::resize(std::size_t size) {
+  leave_parent();
+  if (pool_.run) {
+    if (others_) end();
+    asked_ = size;
+    return;
+  }
+  if (size == asked_ && (others_ || size < 2)) return;
+  end();
   asked_ = size;
   if (size < 2) return;
   process_ = getpid();

@@ -65,8 +65,15 @@ module ilaw_coupled_abi
     type(c_funptr) :: sum = c_null_funptr
   end type
 
+  type, bind(c) :: ilaw_threads
+    integer(c_int32_t) :: struct_size = 24
+    integer(c_int32_t) :: reserved = 0
+    type(c_ptr) :: context = c_null_ptr
+    type(c_funptr) :: run = c_null_funptr
+  end type
+
   type, bind(c) :: ilaw_coupled_options
-    integer(c_int32_t) :: struct_size = 48
+    integer(c_int32_t) :: struct_size = 56
     integer(c_int32_t) :: most_sweeps = 0
     real(c_double) :: tolerance = 0
     type(c_ptr) :: exchange = c_null_ptr
@@ -74,6 +81,7 @@ module ilaw_coupled_abi
     real(c_double) :: rounding = 0
     integer(c_int32_t) :: threads = 0
     integer(c_int32_t) :: reserved = 0
+    type(c_ptr) :: pool = c_null_ptr
   end type
 
   type, bind(c) :: ilaw_coupled_report

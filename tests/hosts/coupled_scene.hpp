@@ -135,6 +135,7 @@ struct Scene {
     options.tolerance = tolerance;
     options.most_sweeps = most_sweeps;
     options.threads = threads;
+    options.pool = pool;
     return solver.solve(bodies(), c, options);
   }
 
@@ -165,6 +166,7 @@ struct Scene {
 
   ilaw::interface law;
   std::uint32_t form = ILAW_DELASSUS_FULL, threads = 0;
+  const ilaw_threads* pool = nullptr;
   ilaw::coupled solver;
   std::vector<double> v, w, v_before, w_before;
   std::vector<std::int32_t> body, counterpart;

@@ -2,10 +2,12 @@
 // build all others.
 #include "coupled_scene.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <sys/wait.h>
@@ -70,6 +72,44 @@ TEST_P(CoupledThreads, GiveTheBitsOfOne) {
     EXPECT_EQ(report.sweeps, expected.sweeps);
     EXPECT_EQ(report.worst_contact, expected.worst_contact);
   }
+}
+
+// Starts threads for each part, of which the host has two, or more than asked.
+struct Pool {
+  explicit Pool(std::uint32_t at_most) : most(at_most) {
+    given.struct_size = sizeof given;
+    given.context = this;
+    given.run = [](void* context, std::uint32_t threads, ilaw_work_function part, void* work) {
+      Pool& pool = *static_cast<Pool*>(context);
+      pool.asked = threads;
+      const std::uint32_t count = std::min(threads, pool.most);
+      std::vector<std::thread> others;
+      for (std::uint32_t t = 1; t < count; ++t) others.emplace_back(part, work, t, count);
+      part(work, 0, count);
+      for (std::thread& other : others) other.join();
+    };
+  }
+  ilaw_threads given{};
+  std::uint32_t most, asked = 0;
+};
+
+TEST_P(CoupledThreads, OfTheHostGiveTheBitsOfOne) {
+  Scene one = lattice(GetParam());
+  one.step(g, 1e-12, most_iterations);
+  for (const std::uint32_t most : {1U, 2U, 3U}) {
+    Scene scene = lattice(GetParam());
+    Pool pool(most);
+    scene.threads = 3;
+    scene.pool = &pool.given;
+    scene.step(g, 1e-12, most_iterations);
+    EXPECT_EQ(pool.asked, 3U);
+    EXPECT_TRUE(scene.impulse == one.impulse && scene.v == one.v && scene.w == one.w) << most;
+  }
+  Scene scene = lattice(GetParam(), 4);
+  Pool none(1);
+  none.given.run = nullptr;
+  scene.pool = &none.given;
+  EXPECT_THROW(scene.step(g, 1e-12), ilaw::coupled_error);
 }
 
 TEST_P(CoupledThreads, NameTheBadContactsOfOne) {

@@ -108,6 +108,22 @@ typedef struct ilaw_exchange {
   ilaw_reduce_function sum;
 } ilaw_exchange;
 
+/* A part of the solver's work: number `thread` of `count`. */
+typedef void(ILAW_CALL* ilaw_work_function)(void* work, uint32_t thread, uint32_t count);
+typedef void(ILAW_CALL* ilaw_run_function)(void* context, uint32_t threads, ilaw_work_function part,
+                                           void* work);
+
+/* Threads of the host, such as those of OpenMP, so that those of the solver do not compete with them. run
+ * calls part(work, t, count) for t = 0 .. count - 1, all at the same time, since they wait for each other: 0
+ * on the caller's thread, each other on a thread of its own. It returns when all of them have. count is at
+ * most `threads`, and 1 is right where the host has no other thread free. Called several times in a solve. */
+typedef struct ilaw_threads {
+  uint32_t struct_size;
+  uint32_t reserved; /* 0 */
+  void* context;
+  ilaw_run_function run;
+} ilaw_threads;
+
 /* All zero asks for what the comments say. */
 typedef struct ilaw_coupled_options {
   uint32_t struct_size;
@@ -125,6 +141,7 @@ typedef struct ilaw_coupled_options {
                                     coupled; the same bits for any number. 0, 1: the caller's alone. The
                                     others belong to the solver, and sleep between its calls */
   uint32_t reserved;             /* 0 */
+  const ilaw_threads* pool;      /* that run them; null: the solver's own */
 } ilaw_coupled_options;
 
 /* Method that made the last iteration of the island that took most of them. */
@@ -198,8 +215,9 @@ ilaw_result ILAW_CALL ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies
 /* Size of each struct in its first version, the least that is accepted. */
 #define ILAW_BODIES_SIZE_1_0 ILAW_SIZE_TO(ilaw_bodies, angular_impulse)
 #define ILAW_CONTACTS_SIZE_1_0 ILAW_SIZE_TO(ilaw_contacts, reserved)
+#define ILAW_THREADS_SIZE_1_0 ILAW_SIZE_TO(ilaw_threads, run)
 #define ILAW_EXCHANGE_SIZE_1_0 ILAW_SIZE_TO(ilaw_exchange, sum)
-#define ILAW_COUPLED_OPTIONS_SIZE_1_0 ILAW_SIZE_TO(ilaw_coupled_options, reserved)
+#define ILAW_COUPLED_OPTIONS_SIZE_1_0 ILAW_SIZE_TO(ilaw_coupled_options, pool)
 #define ILAW_COUPLED_REPORT_SIZE_1_0 ILAW_SIZE_TO(ilaw_coupled_report, message)
 
 #if defined(ILAW_BUILDING_SHARED_COUPLED)

@@ -92,6 +92,7 @@ class coupled_options(ctypes.Structure):
         ("rounding", c_double),
         ("threads", c_uint32),
         ("reserved", c_uint32),
+        ("pool", c_void_p),
     ]
 
 

@@ -102,6 +102,13 @@ double CoupledStep::rounding_of_gaps(const StepView& step) const {
   return ulps * std::numeric_limits<double>::epsilon() * largest / step.dt;
 }
 
+// OpenMP's threads, which the rest of the step uses.
+void CoupledStep::run_on_threads(void*, std::uint32_t threads, ilaw_work_function part, void* work) {
+#pragma omp parallel num_threads(static_cast <int>(threads))
+  part(work, static_cast<std::uint32_t>(omp_get_thread_num()),
+       static_cast<std::uint32_t>(omp_get_num_threads()));
+}
+
 void CoupledStep::solve_groups(const StepView& step, double speed, const double* inverse_mass, Dofs& v) {
   const auto d = static_cast<std::size_t>(model_.dimension());
   for (std::vector<double>* values : {&inverse_mass_, &velocity_, &previous_})
@@ -127,7 +134,11 @@ void CoupledStep::solve_groups(const StepView& step, double speed, const double*
   options.tolerance = tolerance_;
   options.speed = speed;
   options.rounding = rounding_of_gaps(step);
-  options.threads = omp_in_parallel() ? 1 : static_cast<std::uint32_t>(omp_get_max_threads());
+  options.threads = static_cast<std::uint32_t>(omp_get_max_threads());
+  ilaw_threads pool{};
+  pool.struct_size = sizeof pool;
+  pool.run = run_on_threads;
+  options.pool = &pool;
   try {
     report_ = solver_.solve(bodies, given_, options);
   } catch (const ilaw::coupled_error& refused) {

@@ -49,6 +49,7 @@ class CoupledStep {
   void number_bodies();
   bool forget_forces();
   double rounding_of_gaps(const StepView& step) const;
+  static void ILAW_CALL run_on_threads(void*, std::uint32_t threads, ilaw_work_function part, void* work);
   void solve_groups(const StepView& step, double speed, const double* inverse_mass, Dofs& v);
 
   const Model& model_;
