@@ -50,6 +50,7 @@ void write_form(Block& block, std::size_t lane, const Layout& layout, const Symm
 const char* Contacts::open(const ilaw_contacts& given, const Bodies& bodies) {
   if (!sized::is_complete(&given)) return "the struct_size of contacts is not that of any version";
   given_ = sized::read(&given);
+  holds_bonds_ = true;
   if (!sized::is_complete(given_.batch)) return "a batch is missing, or its struct_size is wrong";
   theirs_ = sized::read(given_.batch);
   dimension_ = bodies.dimension();

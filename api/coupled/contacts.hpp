@@ -49,7 +49,11 @@ class Contacts {
   void add_outputs(std::vector<const double*>& outputs) const;
   bool is_in_reach(const Block& block, std::size_t lane, const Vector& velocity) const;
   // Whether bonds hold until a solution is judged, and those that broke at one stay broken.
-  bool holds_bonds() const { return (info_.capabilities & ILAW_CAN_HOLD_BONDS) && theirs_.flags == 0; }
+  bool holds_bonds() const {
+    return holds_bonds_ && (info_.capabilities & ILAW_CAN_HOLD_BONDS) && theirs_.flags == 0;
+  }
+  // From now on the law decides, until the next step.
+  void release_bonds() { holds_bonds_ = false; }
 
   // With moments v_free is followed by spins and impulse by moments.
   struct Call {
@@ -99,6 +103,7 @@ class Contacts {
   Kind kind_ = Kind::point;
   Layout layout_;
   std::vector<std::int32_t> ends_;
+  bool holds_bonds_ = true;
 };
 
 }  // namespace ilaw::coupled

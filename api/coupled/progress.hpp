@@ -80,11 +80,11 @@ struct Progress {
     return rounding() <= 2e-6 * scale && (residual() <= limits.tolerance || change <= known);
   }
 
-  // At the impulses that are there, one iteration at least.
-  Progress after_ruptures() const {
+  // From the impulses that are there, with as many iterations more, at least.
+  Progress once_more(std::uint32_t more) const {
     Progress next;
     next.limits = limits;
-    next.limits.most = std::max(limits.most, count + 1);
+    next.limits.most = std::max(limits.most, count + more);
     next.scale = scale;
     next.count = count;
     next.method = method;

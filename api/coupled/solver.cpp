@@ -214,7 +214,8 @@ bool Solver::fill(Block& block) {
 // Iterations add changes to the velocities, and with them rounding. At their end velocities are made anew
 // from the impulses; where that moves them by more than the tolerance, iterations go on. They solve with the
 // bonds that hold; those whose load at that solution is too large break together, and the next round sheds
-// it on the others. So the ruptures of a step depend on no order of contacts.
+// it on the others. So the ruptures of a step depend on no order of contacts. Where bonds that hold have no
+// solution, such as one that a wall pushes against another law, the laws decide.
 void Solver::iterate(Limits limits) {
   constexpr int most_times = 10;
   constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
@@ -230,10 +231,25 @@ void Solver::iterate(Limits limits) {
     const double limit = std::max(std::max(limits.tolerance, rounding) * progress_.scale, limits.rounding);
     const bool moved = ranks_.any_rank(set_velocities() > limit);
     if (moved && times < most_times && progress_.is_solved() && !progress_.is_over()) continue;
-    if (progress_.code < 0 || !ranks_.any_rank(sweep_.break_bonds(blocks_))) return;
-    progress_ = progress_.after_ruptures();
+    if (progress_.code < 0) return;
+    if (ranks_.any_rank(sweep_.break_bonds(blocks_)))
+      progress_ = progress_.once_more(1);
+    else if (!progress_.is_solved() && ranks_.any_rank(release_bonds()))
+      progress_ = progress_.once_more(limits.most);
+    else
+      return;
     times = 0;
   }
+}
+
+// False: none are held.
+bool Solver::release_bonds() {
+  bool any = false;
+  for (std::size_t g = 0; g < problem_.group_count; ++g) {
+    any = any || problem_.groups[g].holds_bonds();
+    problem_.groups[g].release_bonds();
+  }
+  return any;
 }
 
 double Solver::set_velocities() {

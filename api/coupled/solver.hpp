@@ -30,6 +30,7 @@ class Solver {
   void split_shared_bodies();
   void iterate(Limits limits);
   // From the impulses. Returns the largest change of a velocity.
+  bool release_bonds();
   double set_velocities();
   void find_scale(Limits& limits);
   void forget_large_impulses();

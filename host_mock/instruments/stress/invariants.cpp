@@ -88,11 +88,11 @@ std::string other_bits(const json& source, std::int64_t steps, const Bits& expec
   return differs(second, true) ? "resumed from a checkpoint" : "";
 }
 
-// Where a run may have to stop: laws on one node that push against each other without end, explicit springs
-// and large deformations have steps of their own, and a law may say that a step has no one solution.
+// Where a run may have to stop: it says of contacts that share nodes that no solution was found, explicit
+// springs and large deformations have steps of their own, and a law may say that a step has no one solution.
 bool may_stop(const Run& run, const std::string& reason) {
   return reason.find("the law's equations have ") != std::string::npos ||
-         reason.find("push against each other without end") != std::string::npos ||
+         reason.find("have no common solution") != std::string::npos ||
          run.integrator.tally().stable_step < run.scene.dt ||
          run.scene.dt > run.scene.model->critical_step() || !run.scene.model->is_linear();
 }
