@@ -39,7 +39,10 @@ module ilaw_abi
     ILAW_OUTPUT_VELOCITY = 1, ILAW_OUTPUT_STATUS = 2, ILAW_OUTPUT_ENERGY = 4
 
   integer(c_int32_t), parameter :: &
-    ILAW_CAN_ADHERE = 1, ILAW_CAN_STORE_ENERGY = 2
+    ILAW_CAN_ADHERE = 1, ILAW_CAN_STORE_ENERGY = 2, ILAW_CAN_HOLD_BONDS = 4
+
+  integer(c_int32_t), parameter :: &
+    ILAW_BATCH_HOLD_BONDS = 1, ILAW_BATCH_BREAK_BONDS = 2
 
   integer(c_int32_t), parameter :: &
     ILAW_MAY_SKIP_FRESH = 1, ILAW_MAY_SKIP_FREE = 2

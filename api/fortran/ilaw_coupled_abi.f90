@@ -122,6 +122,19 @@ module ilaw_coupled_abi
       real(c_double), intent(inout) :: values(*)
       integer(c_int64_t), value :: count
     end subroutine
+    subroutine ilaw_work_function(work, thread, count) bind(c)
+      import :: c_int32_t, c_ptr
+      type(c_ptr), value :: work
+      integer(c_int32_t), value :: thread
+      integer(c_int32_t), value :: count
+    end subroutine
+    subroutine ilaw_run_function(context, threads, part, work) bind(c)
+      import :: c_funptr, c_int32_t, c_ptr
+      type(c_ptr), value :: context
+      integer(c_int32_t), value :: threads
+      type(c_funptr), value :: part
+      type(c_ptr), value :: work
+    end subroutine
   end interface
 
   interface

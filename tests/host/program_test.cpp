@@ -354,11 +354,11 @@ TEST(Program, ListsAndDescribesLaws) {
   EXPECT_EQ(postit["laws"][0]["id"], "postit");
   EXPECT_EQ(postit["laws"][0]["parameters"].size(), 8U);
   EXPECT_EQ(postit["laws"][0]["parameters"][0]["default"], "inf");
-  EXPECT_EQ(postit["laws"][0]["capabilities"], json({"adhere"}));
+  EXPECT_EQ(postit["laws"][0]["capabilities"], json({"adhere", "hold_bonds"}));
   for (const auto& variable : postit["laws"][0]["state_variables"])
     EXPECT_EQ(!variable["flags"].empty(), variable["name"] == "window") << variable;
   const std::string text = run_program("describe postit").output;
-  for (const char* part : {"tangent_influence", "\n  can: adhere\n", "history, internal"})
+  for (const char* part : {"tangent_influence", "\n  can: adhere, hold_bonds\n", "history, internal"})
     EXPECT_THAT(text, HasSubstr(part)) << part;
   const json coulomb = json::parse(run_program("describe coulomb --json").output)["laws"][0];
   for (const auto& parameter : coulomb["parameters"])

@@ -70,13 +70,16 @@ TEST(WrongBatch, IsRefusedWithNothingWritten) {
 TEST(WrongBatch, FlagsThatAreNotKnownAreRefused) {
   const ilaw::interface law = make_probe();
   SmallBatch node(1, {}, law.info().state_size);
-  for (const int bit : {0, 31, 63}) {
+  for (const int bit : {2, 31, 63}) {
     node.b.flags = std::uint64_t{1} << bit;
     for (const auto call : {law.law().evaluate, law.law().initialise}) {
       EXPECT_EQ(call(law.instance(), &node.b, &node.report), ILAW_UNSUPPORTED) << bit;
       EXPECT_STREQ(node.report.reason, "flags of the batch are not known") << "bit " << bit;
     }
   }
+  node.b.flags = ILAW_BATCH_HOLD_BONDS;
+  EXPECT_EQ(law.law().evaluate(law.instance(), &node.b, &node.report), ILAW_UNSUPPORTED);
+  EXPECT_STREQ(node.report.reason, "the batch tells bonds to hold or break, of a law that cannot hold bonds");
 }
 
 TEST(WrongBatch, InitialiseRefusesStatesOnTopOfEachOther) {

@@ -168,7 +168,7 @@ const RefusedInfo refused_instances[] = {
     {"wrong_flags", ILAW_BAD_LIBRARY, "flags is 256, expected only the bits of 1"},
     {"wrong_per_node", ILAW_BAD_LIBRARY, "per-node parameter 'strength' was not given per node"},
     {"unknown_input", ILAW_UNSUPPORTED, "reads inputs 1048576, expected only the bits of 63"},
-    {"unknown_capability", ILAW_BAD_LIBRARY, "capabilities is 1048576, expected only the bits of 3"},
+    {"unknown_capability", ILAW_BAD_LIBRARY, "capabilities is 1048576, expected only the bits of 7"},
     {"no_permissions", ILAW_BAD_LIBRARY, "permissions is 0, expected at least the law's, 1"},
     {"unknown_permission", ILAW_BAD_LIBRARY, "permissions is 1048577, expected only the bits of 3"},
     {"foreign_amount", ILAW_BAD_LIBRARY, "amount 'wear' is none of the law's"},

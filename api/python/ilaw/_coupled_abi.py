@@ -82,6 +82,19 @@ class exchange(ctypes.Structure):
     ]
 
 
+work_function = CFUNCTYPE(None, c_void_p, c_uint32, c_uint32)
+run_function = CFUNCTYPE(None, c_void_p, c_uint32, work_function, c_void_p)
+
+
+class threads(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("context", c_void_p),
+        ("run", run_function),
+    ]
+
+
 class coupled_options(ctypes.Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -92,7 +105,7 @@ class coupled_options(ctypes.Structure):
         ("rounding", c_double),
         ("threads", c_uint32),
         ("reserved", c_uint32),
-        ("pool", c_void_p),
+        ("pool", POINTER(threads)),
     ]
 
 
