@@ -136,11 +136,9 @@ void Iterations::read_scaled(const Blocks& blocks) {
   }
 }
 
-// An accelerated iterate with a larger squared change than all of the last few plain ones is given up
-// (Grippo, Lampariello, Lucidi 1986, A nonmonotone line search technique for Newton's method): a contact that
-// opens raises the change of plain iterations, too. The plain iterate goes on, and the next correction makes
-// a smaller velocity. Contacts that press against each other change by the same in each iteration until one
-// of them slips or opens, which corrections overshoot by far.
+// An accelerated iterate with a larger squared change than the plain one before it is given up: the plain one
+// goes on, and the next correction makes a smaller velocity. Contacts that press against each other change by
+// the same in each iteration until one of them slips or opens, which corrections overshoot by far.
 Outcome Iterations::anderson(Blocks& blocks, Progress& progress, std::uint32_t most, Best& best) {
   constexpr double shorter = 0.25, longer = 2.0, as_large = 1.0 + 1e-3;
   progress.method = ILAW_METHOD_ANDERSON;
@@ -148,9 +146,7 @@ Outcome Iterations::anderson(Blocks& blocks, Progress& progress, std::uint32_t m
   for (auto* vector : {&image_, &step_, &correction_}) vector->resize(size);
   anderson_.reset(size, Anderson::max_depth, 1.0);
   const auto sum = [this](double* values, std::size_t count) { ranks_.sum(values, count); };
-  std::array<double, 10> accepted{Progress::infinity};  // the last squared changes
-  std::size_t accepted_count = 0;
-  double radius = 0.0, made = 0.0;
+  double accepted = Progress::infinity, radius = 0.0, made = 0.0;
   for (std::uint32_t k = 0; k < most && !progress.is_over(); ++k) {
     if (ranks_.any()) keep_start();
     iterate(blocks, progress);
@@ -160,14 +156,14 @@ Outcome Iterations::anderson(Blocks& blocks, Progress& progress, std::uint32_t m
       read_impulses(blocks, best.impulses);
     }
     if (k + 1 == most || progress.is_over()) break;
-    if (made > 0.0 && !(progress.square <= as_large * *std::max_element(accepted.begin(), accepted.end()))) {
+    if (made > 0.0 && !(progress.square <= as_large * accepted)) {
       radius = shorter * std::min(made, progress.size);
       made = 0.0;
       return_to_image(blocks);
       continue;
     }
     if (made > 0.0) radius *= longer;
-    accepted[accepted_count++ % accepted.size()] = progress.square;
+    accepted = progress.square;
     read_scaled(blocks);
     made = 0.0;
     if (!anderson_.correct(image_, step_, sum, correction_)) continue;

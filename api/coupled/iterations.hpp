@@ -4,8 +4,8 @@
 // conjugate gradient method for interactive contact force problems). To a tolerance: some of these, then
 // island by island Anderson's acceleration; where that stalls, Newton steps and Douglas-Rachford splitting.
 // An accelerated iterate is taken only where the change that a plain iteration makes there is smaller than
-// one of the last few; otherwise the plain iterate goes on. Changes are compared with velocities that the
-// problem brings, so that impulses that run away do not make their own residual small.
+// before; otherwise the plain iterate goes on. Changes are compared with velocities that the problem brings,
+// so that impulses that run away do not make their own residual small.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
