@@ -52,6 +52,28 @@ TEST(RootBetween, FindsAJump) {
   }
 }
 
+// x^2 = 2 c^2, where squares of x underflow or overflow.
+TEST(RootBetween, FindsRootsOfAnySize) {
+  for (const double c : {1e-300, 1e-200, 1e-160, 1e-100, 1.0, 1e200})
+    for (const bool is_exact : {true, false}) {
+      const double found = root_between(0.0, 2.0 * c, 2.0 * c, true, [&](double x) {
+        return root_trial<double>{x / c * (x / c) - 2.0, 2.0 / c, 2.0 * x / c, c, is_exact};
+      });
+      EXPECT_NEAR(found / c, std::sqrt(2.0), 1e-14) << c << ", " << is_exact;
+    }
+}
+
+// NaN is no root; a start from which f is none, but not at other places, is left.
+TEST(RootBetween, IsNoNumberWhereItsFunctionIsNone) {
+  const auto none = [](double) { return root_trial<double>{std::nan(""), 1.0, 1.0, 1.0, true}; };
+  EXPECT_TRUE(std::isnan(root_between(0.0, 2.0, 1.0, true, none)));
+  EXPECT_EQ(root_between(0.0, 2.0, 1.0, false, none), 1.0);
+  const auto beside = [](double x) {
+    return root_trial<double>{x > 1.5 ? std::nan("") : x - 1.0, 1.0, 1.0, 1.0, true};
+  };
+  EXPECT_EQ(root_between(0.0, 2.0, 2.0, true, beside), 1.0);
+}
+
 // f is called last at the result, so what it keeps belongs to that.
 TEST(RootBetween, CallsItsFunctionLastAtTheRoot) {
   double last = 0.0;
@@ -117,7 +139,7 @@ TEST(RootsInPacks, AreThoseOfEachLane) {
   std::array<double, lanes> squares{}, found{}, alone{};
   for (std::size_t k = 0; k < lanes; ++k) squares[k] = std::array{1e-9, 3.999, 1.0, 0.25, 1e-3, 1.5}[k % 6];
   pack c;
-  __builtin_memcpy(&c, squares.data(), sizeof c);
+  __builtin_memcpy(static_cast<void*>(&c), squares.data(), sizeof c);
   const pack root = root_between(pack(0.0), pack(2.0), pack(1.0), pack(0.0) == pack(0.0), [&](pack x) {
     return root_trial<pack>{x * x - c, 1.0, 2.0 * x, 1.0, pack(0.0) == pack(0.0)};
   });

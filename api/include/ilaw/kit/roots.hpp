@@ -6,8 +6,9 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-// A function at one place x. The equation x = g(x) has value = size (x - g(x)), with any size > 0; its slope
-// is rise/run, an estimate or, where it is exact, the derivative.
+// A function at one place x. The equation x = g(x) has value = size (x - g(x)); in any other, size is about
+// that slope: x is a root where |value| <= 2^-50 size x, and x - value/size follows where a step leaves the
+// bracket. Its slope is rise/run, an estimate or, where it is exact, the derivative.
 template <class V>
 struct root_trial {
   V value, size, rise, run;
@@ -17,16 +18,19 @@ struct root_trial {
 // Where f, not positive at low >= 0 and not negative at high, changes sign, in the lanes where active; others
 // keep x. Newton's steps where the slope is exact, else secants after the first (Dekker 1969); the fixed
 // point where these leave the bracket; bisection after most_steps of them. The last place that f is called at
-// is the result, in all lanes, so what f keeps of it may be used. A jump across zero is found as well.
+// is the result, in all lanes, so what f keeps of it may be used. A jump across zero is found as well. NaN
+// where f is at the last place at which it was looked at.
 template <class V, class Function>
 ILAW_KIT_INLINE V root_between(V low, V high, V x, mask_of<V> active, Function f) {
   constexpr int most_steps = 24, most_bisections = 80;
   constexpr double rounding = 0x1p-50, close = 0x1p-64;  // close: of the product of the last two errors
   V before = x, value_before = 0.0;
+  mask_of<V> is_lost = active & !active;
   for (int k = 0;; ++k) {
     const root_trial<V> t = f(x);
-    active = active & (absolute(t.value) > rounding * (absolute(x) * t.size));
-    if (!any(active) || k == most_steps + most_bisections) return x;
+    is_lost = (is_lost & !active) | (active & (t.value != t.value));
+    active = active & ((absolute(t.value) > rounding * (absolute(x) * t.size)) | is_lost);
+    if (!any(active) || k == most_steps + most_bisections) return select(is_lost, V(not_a_number), x);
     low = select(active & (t.value < 0.0), x, low);
     high = select(active & (t.value >= 0.0), x, high);
     V rise = t.rise, run = t.run;
@@ -42,7 +46,8 @@ ILAW_KIT_INLINE V root_between(V low, V high, V x, mask_of<V> active, Function f
       next = halfway(low, high);
     const V step = absolute(next - x);
     const V last = k == 0 ? step : select(t.is_exact, step, absolute(x - before));
-    mask_of<V> moves = step * last > close * (x * x);
+    const V down = power_scale_of(absolute(x)).down, size = down * x;  // lest the squares leave the numbers
+    mask_of<V> moves = (down * step) * (down * last) > close * (size * size);
     if (k >= most_steps) [[unlikely]]
       moves = (next > low) & (next < high);
     before = select(active, x, before);
