@@ -33,7 +33,7 @@ status_of<V> sum_up(Node& node, V viscosity, V last) {
   return select(c > 0.0, status::closed, status::free);
 }
 
-// With a history of any length, written node by node.
+// Every kind of state.
 template <class V>
 struct kit_probe {
   V viscosity;
@@ -46,7 +46,11 @@ struct kit_probe {
   static constexpr auto& references = no_references;
   static constexpr parameter<kit_probe> parameters[] = {
       {.member = &kit_probe::viscosity, .name = "viscosity", .unit = "N.s/m", .doc = "c", .required = true}};
-  using state = sums<V>;
+  struct state {
+    tangential_vector<V> slip;  // of closed steps
+    V count, last, before_last;
+    vector<V> sum;  // of impulses
+  };
   static constexpr state_variable<state> state_variables[] = {
       {.member = &state::count,
        .name = "count",
@@ -55,9 +59,13 @@ struct kit_probe {
        .maximum = 1e6,
        .whole = true},
       {.member = &state::sum, .name = "sum", .unit = "N.s", .doc = "impulses"},
-      {.member = &state::slip, .name = "slip", .unit = "m", .doc = "of closed steps"}};
-  static constexpr history_card history{.name = "last", .doc = "last two v_N", .internal = true};
-  std::int64_t history_size() const { return 2; }
+      {.member = &state::slip, .name = "slip", .unit = "m", .doc = "of closed steps"},
+      {.member = &state::last, .name = "last", .unit = "m/s", .doc = "v_N before", .internal = true},
+      {.member = &state::before_last,
+       .name = "before_last",
+       .unit = "m/s",
+       .doc = "v_N before that",
+       .internal = true}};
   static const void* extension(const char* name) {
     return std::strcmp(name, "tests.answer/1") == 0 ? &answer_to_all : nullptr;
   }
@@ -65,12 +73,10 @@ struct kit_probe {
 
   template <class Node>
   status_of<V> step(Node& node) const {
-    return sum_up<V>(node, viscosity, node.history[0]);
-  }
-  template <class Node>
-  void record(const Node& node, history_values own) const {
-    own[1] = own[0];
-    own[0] = node.v_free.n;
+    const V last = node.state.last;
+    node.state.before_last = last;
+    node.state.last = node.v_free.n;
+    return sum_up<V>(node, viscosity, last);
   }
 };
 

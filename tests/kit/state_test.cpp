@@ -95,6 +95,7 @@ TEST(StateVariables, SayWhichAreInternal) {
                                                          {"sum", 0},
                                                          {"slip", 0},
                                                          {"last", ILAW_FLAG_INTERNAL},
+                                                         {"before_last", ILAW_FLAG_INTERNAL},
                                                          {"frame_normal", ILAW_FLAG_INTERNAL},
                                                          {"frame_tangent", ILAW_FLAG_INTERNAL}};
   ASSERT_EQ(info.state_variable_count, expected.size());

@@ -114,24 +114,13 @@ WRONG(state_without_description)
   };
 };
 
-// a history is static constexpr history_card history and either std::int64_t history_size() const with record, or window() const with static bool adds_to_window(ilaw_status) and clears_window(ilaw_status)
+// a history is static constexpr history_card history and window() const with static bool adds_to_window(ilaw_status) and clears_window(ilaw_status)
 WRONG(history_without_size)
   STEP
   static constexpr history_card history{.name = "past"};
-  template <class Node>
-  void record(const Node&, history_values) const {}
 };
 
-// record must be template <class Node> void record(const Node& node, history_values own) const
-WRONG(mutable_record)
-  STEP
-  static constexpr history_card history{.name = "past"};
-  std::int64_t history_size() const { return 1; }
-  template <class Node>
-  void record(const Node&, history_values) {}
-};
-
-// a history is static constexpr history_card history and either std::int64_t history_size() const with record, or window() const with static bool adds_to_window(ilaw_status) and clears_window(ilaw_status)
+// a history is static constexpr history_card history and window() const with static bool adds_to_window(ilaw_status) and clears_window(ilaw_status)
 WRONG(window_that_is_never_emptied)
   STEP
   static constexpr history_card history{.name = "past"};
@@ -468,7 +457,6 @@ SEEN(one_state_twice);
 SEEN(state_without_member);
 SEEN(state_without_description);
 SEEN(history_without_size);
-SEEN(mutable_record);
 SEEN(window_that_is_never_emptied);
 SEEN(one_member_twice);
 SEEN(parameter_without_member);

@@ -7,7 +7,7 @@
 // clang-format off
 //   is    card, references, parameters       what it is called, serves and reads
 //         state, state_variables             named memory (state.hpp)
-//         history                            a memory of any number of doubles
+//         history                            what its window is called in the state
 //         amounts                            scalars that it gives per node and step; heat.hpp has some
 //   does  step(node)                         its equations in closed form; returns the status
 //         problem, answer                    where a solver is needed, structs whose members are V, for the step
@@ -28,8 +28,7 @@
 //         stable_velocity_step(node)         the largest stable step; or of (h_N, h_T), where it falls with both
 //                                            and depends on nothing else; or both, the second NaN where the
 //                                            first is meant
-//         history_size(), record(node, own)  the doubles of a free history, and how a step writes them; or
-//         window(), adds_to_window(status), clears_window(status)   those of a window (window.hpp)
+//         window(), adds_to_window(status), clears_window(status)   of a history (window.hpp)
 //         extension(name)                    see ilaw_law
 // clang-format on
 //

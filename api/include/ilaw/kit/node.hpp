@@ -110,8 +110,7 @@ struct node {
   const input_t<Law, reads_area, V, undeclared_input<V, reads_area>> area;
   // A spin w is given as w_N and w x n: the velocity at the contact point of a sphere of unit radius.
   const spin_type spin_free = {}, spin_previous = {};
-  vector<V> earlier = {};      // what the law's window sums up to before the step
-  const_history history = {};  // of laws with a free history
+  vector<V> earlier = {};  // what the law's window sums up to before the step
 
   Vector impulse = {};
   spin_type moment = {};  // m_N and m x n likewise

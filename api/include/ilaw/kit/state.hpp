@@ -94,23 +94,12 @@ struct state_variable {
   }
 };
 
-// The history of a law: any number of doubles of a node, meaningful to the law alone.
+// What a law's window is called in the host's state.
 struct history_card {
   const char* name;
   const char* unit = "1";
   const char* doc = "";
   bool internal = false;
-};
-struct const_history {
-  const double* values;
-  std::int64_t stride;
-  double operator[](std::int64_t k) const { return values[k * stride]; }
-};
-struct history_values {
-  double* values;
-  std::int64_t stride;
-  double& operator[](std::int64_t k) const { return values[k * stride]; }
-  operator const_history() const { return {values, stride}; }
 };
 
 // Whether a law remembers directions, which turn with the frame.

@@ -12,9 +12,6 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // ---- the loop of a batch
 
-template <class Law>
-using loop_number = std::conditional_t<has_free_history<Law>, double, pack>;
-
 // Null: there is none for floats, which are then converted by blocks: a solver takes longer than that, and of
 // a step beside one little is to be gained where a state of doubles moves with it.
 template <class Law, class Number, template <class> class Frame, template <class> class Delassus,
@@ -22,7 +19,7 @@ template <class Law, class Number, template <class> class Frame, template <class
 typename batch_walk<Number>::run_function loop_of(const instance<Law>& made) {
   if constexpr (Remembers && requires { made.law.remembers(); })
     if (made.states == 0) return loop_of<Law, Number, Frame, Delassus, false>(made);
-  using V = loop_number<Law>;
+  using V = pack;
   using plain = kernel<Law, V, Number, Frame, Delassus, Remembers>;
   using Wide = law_on_t<Law, V>;
   using node_type = typename plain::node_type;

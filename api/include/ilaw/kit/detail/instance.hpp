@@ -310,8 +310,6 @@ class instance_builder {
     if constexpr (has_window<Law>) {
       made_.window = made_.law.window();
       made_.history_size = window::doubles(made_.window);
-    } else if constexpr (has_history<Law>) {
-      made_.history_size = made_.law.history_size();
     }
     const bool remembers = kit::remembers(made_.law);
     const auto declared = abi_state_variables<Law>(static_cast<int>(made_.dimension),

@@ -208,12 +208,7 @@ struct kernel {
         n.earlier = {load<V>(b.earlier[0] + i), load<V>(b.earlier[1] + i), load<V>(b.earlier[2] + i)};
         n.refused = load<V>(b.earlier_refused + i);
       }
-    } else if constexpr (has_history<Law>) {
-      n.history = history_of(b, i);
     }
-  }
-  static history_values history_of(const view_type& b, std::int64_t i) {
-    return {b.history + (b.nodes ? b.nodes[i] : i) * b.history_node_stride, b.history_component_stride};
   }
 
   // ---- check the result
@@ -339,9 +334,9 @@ struct kernel {
     }
   }
 
-  // Windows are written after their block, histories here.
-  ILAW_KIT_INLINE static void store_history(const Wide& law, const loaded& p, const view_type& b,
-                                            std::int64_t i, status_of<V> status, mask accepted) {
+  // Windows are written after their block.
+  ILAW_KIT_INLINE static void store_window(const loaded& p, const view_type& b, std::int64_t i,
+                                           status_of<V> status, mask accepted) {
     if constexpr (has_window<Law>) {
       if (!b.earlier[0]) return;
       detail::store(p.node.impulse.n, b.given[0] + i);
@@ -356,8 +351,6 @@ struct kernel {
       }
       detail::store(zero_unless(accepted & adds, V(1.0)), b.adds + i);
       detail::store(zero_unless(accepted & clears, V(1.0)), b.clears + i);
-    } else if constexpr (has_history<Law>) {
-      if (accepted) law.record(p.node, history_of(b, i));
     }
   }
 
@@ -376,7 +369,7 @@ struct kernel {
     axis<V> r = p.frame.to_global(n.impulse);
     if constexpr (careful) r = select(accepted, r, axis<V>{0.0, 0.0, 0.0});
     store_vector(r, b.impulse, i);
-    store_history(law, p, b, i, status, accepted);
+    store_window(p, b, i, status, accepted);
     store_frame(p, b, i, status, accepted);
     if constexpr (spins) store_spin(p.frame, n.moment, {0.0, 0.0, 0.0}, b.moment, i, accepted);
     if (b.moves) {

@@ -91,15 +91,15 @@ constexpr bool state_is_apart() {
 
 // The nodes that a law may be given: by form of H, and by what its vectors are.
 template <class Law, template <class> class Vector, template <class> class Delassus>
-using node_on = node<law_on_t<Law, loop_number<Law>>, Vector<loop_number<Law>>, Delassus<loop_number<Law>>>;
+using node_on = node<law_on_t<Law, pack>, Vector<pack>, Delassus<pack>>;
 
 // Calls that only name their types: no body is compiled for them. T&&: a function that takes a copy of its
 // node, or one that it may not write, changes nothing.
 template <class Law, class Node>
 struct calls {
   using node_type = Node;
-  using Wide = law_on_t<Law, loop_number<Law>>;
-  using V = loop_number<Law>;
+  using Wide = law_on_t<Law, pack>;
+  using V = pack;
 
   static constexpr bool steps_somehow = requires(Wide & law, Node& n) { law.step(n); };
   static constexpr bool steps = requires(const Wide& law, Node& n) {
@@ -204,8 +204,7 @@ constexpr bool solves_rightly() {
 template <class Law>
 inline constexpr bool limits_step_rightly =
     !names_stable_velocity_step<Law> ||
-    kernel<Law, loop_number<Law>, double, local_frame, transverse>::steps::by_delassus ||
-    any_node<Law>([](auto call) {
+    kernel<Law, pack, double, local_frame, transverse>::steps::by_delassus || any_node<Law>([](auto call) {
       using W = typename decltype(call)::Wide;
       return requires(const W& law, const typename decltype(call)::node_type& n) {
         law.stable_velocity_step(n);
@@ -218,30 +217,11 @@ concept has_window_rightly = requires(const Law& law) {
   { Law::clears_window(ilaw_status{}) } -> std::same_as<bool>;
 };
 template <class Law>
-concept has_record_rightly = requires(const Law& law, history_values own) {
-  { law.history_size() } -> std::same_as<std::int64_t>;
-};
-template <class Law>
 constexpr bool has_history_rightly() {
-  if constexpr (!has_history<Law>)
-    return !(names_history_size<Law> || names_record<Law> || names_window<Law> || names_adds_to_window<Law> ||
-             names_clears_window<Law>);
-  else if constexpr (names_window<Law>)
-    return has_window_rightly<Law> && !names_record<Law> && !names_history_size<Law>;
+  if constexpr (has_history<Law>)
+    return has_window_rightly<Law>;
   else
-    return has_record_rightly<Law> && names_record<Law> && !names_adds_to_window<Law> &&
-           !names_clears_window<Law>;
-}
-template <class Law>
-constexpr bool records_rightly() {
-  if constexpr (names_record<Law>)
-    return any_node<Law>([](auto call) {
-      using W = typename decltype(call)::Wide;
-      return requires(const W& law, const typename decltype(call)::node_type& n, history_values own) {
-        law.record(n, own);
-      };
-    });
-  return true;
+    return !(names_window<Law> || names_adds_to_window<Law> || names_clears_window<Law>);
 }
 template <class Law>
 constexpr bool has_amounts_rightly() {
@@ -360,10 +340,9 @@ constexpr bool passes_members() {
       "extension must be static const void* extension(const char* name)")
   ILAW_KIT_CHECK(has_amounts_rightly<Law>(),
                  "amounts must be static constexpr amount_card amounts[], at most eight")
-  ILAW_KIT_CHECK(
-      has_history_rightly<Law>(),
-      "a history is static constexpr history_card history and either std::int64_t history_size() const with "
-      "record, or window() const with static bool adds_to_window(ilaw_status) and clears_window(ilaw_status)")
+  ILAW_KIT_CHECK(has_history_rightly<Law>(),
+                 "a history is static constexpr history_card history and window() const with static bool "
+                 "adds_to_window(ilaw_status) and clears_window(ilaw_status)")
   return passes;
 }
 
@@ -391,9 +370,6 @@ constexpr bool passes_nodes() {
       limits_step_rightly<Law>,
       "stable_velocity_step must be V stable_velocity_step(V h_n, V h_t) const, or template <class Node> V "
       "stable_velocity_step(const Node& node) const")
-  ILAW_KIT_CHECK(
-      records_rightly<Law>(),
-      "record must be template <class Node> void record(const Node& node, history_values own) const")
   return passes;
 }
 #undef ILAW_KIT_CHECK

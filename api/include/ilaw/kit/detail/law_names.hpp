@@ -36,8 +36,7 @@ ILAW_KIT_NAME(problem); ILAW_KIT_NAME(answer); ILAW_KIT_NAME(ask); ILAW_KIT_NAME
 ILAW_KIT_NAME(solve_scalar); ILAW_KIT_NAME(finish); ILAW_KIT_NAME(asks); ILAW_KIT_NAME(remembers);
 ILAW_KIT_NAME(prepare); ILAW_KIT_NAME(initialise); ILAW_KIT_NAME(conflict); ILAW_KIT_NAME(inputs);
 ILAW_KIT_NAME(capabilities); ILAW_KIT_NAME(permissions); ILAW_KIT_NAME(tells_tangents_apart);
-ILAW_KIT_NAME(stable_velocity_step); ILAW_KIT_NAME(history_size); ILAW_KIT_NAME(record);
-ILAW_KIT_NAME(window); ILAW_KIT_NAME(adds_to_window); ILAW_KIT_NAME(clears_window);
+ILAW_KIT_NAME(stable_velocity_step); ILAW_KIT_NAME(window); ILAW_KIT_NAME(adds_to_window); ILAW_KIT_NAME(clears_window);
 ILAW_KIT_NAME(extension);
 
 #define ILAW_KIT_SPELLINGS(spelling) \
@@ -66,7 +65,6 @@ ILAW_KIT_NAME(extension);
   spelling(tell_tangents_apart, "'tells_tangents_apart'") \
   spelling(tells_tangents, "'tells_tangents_apart'") \
   spelling(stable_step, "'stable_velocity_step'") spelling(stable_time_step, "'stable_velocity_step'") \
-  spelling(records, "'record'") \
   spelling(windows, "'window'") spelling(window_in, "'window'") \
   spelling(add_to_window, "'adds_to_window'") \
   spelling(clear_window, "'clears_window'") \

@@ -35,10 +35,6 @@ concept can_choose = requires(const Law& law, Node& n) {
 &&(
     requires(const Law& law) { law.asks(); } || requires(const Law& law) { law.asks(true); });
 
-// Free histories are read and written node by node.
-template <class Law>
-inline constexpr bool has_free_history = has_history<Law> && !has_window<Law>;
-
 template <class Law, class V>
 struct law_on;
 template <template <class> class L, class Old, class V>

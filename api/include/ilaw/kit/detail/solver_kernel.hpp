@@ -308,7 +308,6 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
             .spin_free = n.spin_free,
             .spin_previous = n.spin_previous,
             .earlier = n.earlier,
-            .history = n.history,
             .state = n.state,
             .refused = n.refused};
   }

@@ -79,10 +79,6 @@ struct view : view_options {
   // and for those that are emptied before. Null: the law has none, or remembers nothing.
   const double *earlier[3], *earlier_refused;
   double *given[3], *adds, *clears;
-  // Free histories: of the node at position 0, and the nodes where they are listed.
-  double* history;
-  std::int64_t history_node_stride, history_component_stride;
-  const std::int64_t* nodes;
 
   bool varies(int parameter) const { return parameters[parameter] || (tables && tables[parameter].per_node); }
 };
@@ -133,8 +129,6 @@ class pack_copy {
     pack.earlier_refused = take(b.earlier_refused, earlier_[3]);
     pack.adds = given_[3];
     pack.clears = given_[4];
-    pack.history = b.history + (b.nodes ? b.nodes[i] : i) * b.history_node_stride;
-    pack.history_component_stride = b.history_component_stride;
   }
   pack_copy(const pack_copy&) = delete;
 

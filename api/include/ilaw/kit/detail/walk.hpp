@@ -186,11 +186,6 @@ class batch_walk {
     else
       v.state_out = {out, block_nodes, made_.states, 0};
     open_frame(v, n, out + made_.states * block_nodes);
-    v.history =
-        to.values + made_.history_offset * to.component_stride + (n.listed ? 0 : n.first * to.node_stride);
-    v.history_node_stride = to.node_stride;
-    v.history_component_stride = to.component_stride;
-    v.nodes = n.listed ? n.where : nullptr;
   }
   void open_frame(view<Number>& v, const node_range& n, double* copy) {
     if (!made_.carries_frame) return;
@@ -209,7 +204,7 @@ class batch_walk {
     else
       v.frame_out = {copy + 6 * block_nodes, block_nodes, 6, 0};
   }
-  // A history is worked on in state_out, which therefore starts as state_in.
+  // A window is worked on in state_out, which therefore starts as state_in.
   void copy_unnamed(const node_range& n) const {
     const ilaw_input& in = b_.state_in;
     const ilaw_output& out = b_.state_out;
@@ -236,9 +231,13 @@ class batch_walk {
                       to.component_stride, n, frame + k * block_nodes);
   }
 
-  void run_with_windows(view<Number>& v, run_function loop, const void* law, tally& found) {
+  void run_with_windows(view<Number>& v, const node_range& n, run_function loop, const void* law,
+                        tally& found) {
     const window w(made_.window, {b_.time + 0.5 * b_.position_step, b_.velocity_step});
-    const window_place place{v.history, v.history_node_stride, v.history_component_stride, v.count, v.nodes};
+    const ilaw_output& to = b_.state_out;
+    const window_place place{
+        to.values + made_.history_offset * to.component_stride + (n.listed ? 0 : n.first * to.node_stride),
+        to.node_stride, to.component_stride, v.count, n.listed ? n.where : nullptr};
     window_block windows;
     for (int c = 0; c < 3; ++c) {
       v.earlier[c] = windows.earlier[c];
@@ -303,7 +302,7 @@ class batch_walk {
     tally found;
     if constexpr (HasWindow) {
       if (made_.window.duration > 0.0)
-        run_with_windows(v, loop, law, found);
+        run_with_windows(v, n, loop, law, found);
       else
         loop(law, v, found);
     } else {

@@ -68,12 +68,12 @@ struct device_arguments : device_options {
 
 // ---- which kernels a law has
 
-// Free histories and tables that a step reads stay on the host.
+// Tables that a step reads stay on the host.
 template <class Law>
 inline constexpr bool serves_devices = [] {
   bool reads_tables = false;
   for (const auto& p : Law::parameters) reads_tables = reads_tables || p.member.is_grid();
-  return !has_free_history<Law> && !reads_tables;
+  return !reads_tables;
 }();
 
 template <device_frame Frame, class V>
