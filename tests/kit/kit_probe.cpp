@@ -283,7 +283,27 @@ struct promise_breaker {
   }
 };
 
+// Its impulse is a plain copy of an input.
+template <class V>
+struct copy_probe {
+  V factor;
+
+  static constexpr law_card card{.id = "copy_probe",
+                                 .title = "A copy",
+                                 .doc = "r = v_free",
+                                 .capabilities = can_adhere,
+                                 .is_isotropic = true};
+  static constexpr auto& references = no_references;
+  static constexpr parameter<copy_probe> parameters[] = {
+      {.member = &copy_probe::factor, .name = "factor", .doc = "Not read.", .default_value = 1.0}};
+  template <class Node>
+  status_of<V> step(Node& node) const {
+    node.impulse = node.v_free;
+    return status::closed;
+  }
+};
+
 }  // namespace
 
 ILAW_PLUGIN("kit_probe", "1.0.0", "tests", "BSD-3-Clause", kit_probe, pack_probe, solver_probe, limit_probe,
-            node_limit_probe, promise_breaker)
+            node_limit_probe, promise_breaker, copy_probe)

@@ -90,7 +90,7 @@ TEST(Packs, GiveTheBitsOfADouble) {
     for (double& one : x)
       one = i < 8 ? special[i] : i % 2 ? random(-760.0, 720.0) : exp(random(-760.0, 720.0));
     pack all;
-    std::memcpy(&all, x, sizeof x);
+    std::memcpy(static_cast<void*>(&all), x, sizeof x);
     const pack exps = exp(all), logs = log(all), minus_one = exp_minus_one(all), one_plus = log_one_plus(all);
     for (int lane = 0; lane < pack::size; ++lane) {
       ASSERT_EQ(bits(exps[lane]), bits(exp(x[lane]))) << "seed 6, x = " << x[lane];

@@ -56,7 +56,7 @@ local_problem<pack> packed(const std::vector<local_coulomb>& problems,
     for (std::size_t k = 0; k < numbers; ++k) values[k][lane] = one[k];
   }
   local_problem<pack> p;
-  std::memcpy(&p, values, sizeof p);  // h, q, mu
+  std::memcpy(static_cast<void*>(&p), values, sizeof p);  // h, q, mu
   return p;
 }
 

@@ -199,6 +199,14 @@ struct pack_of {
   detail::one v[Registers];
 
   pack_of() = default;
+  pack_of(const pack_of&) = default;
+  // Register by register: g++ 12 loses the assignment of a whole vector of packs (node.impulse = node.v_free)
+  // between scalar replacement and value numbering.
+  ILAW_KIT_INLINE pack_of& operator=(const pack_of& a) {
+#pragma GCC unroll 4
+    for (int k = 0; k < Registers; ++k) v[k] = a.v[k];
+    return *this;
+  }
   template <class F, int... K>
   ILAW_KIT_INLINE pack_of(F f, std::integer_sequence<int, K...>) : v{f(K)...} {}
   ILAW_KIT_INLINE pack_of(double x)

@@ -53,7 +53,8 @@ constexpr bool axes_are_known() {
 
 // Structs whose members are V and nothing else grow as V does.
 template <class OfPack, class OfTwo>
-inline constexpr bool all_of_V = sizeof(OfTwo) == 2 * sizeof(OfPack) && std::is_trivially_copyable_v<OfPack>;
+inline constexpr bool all_of_V =
+    sizeof(OfTwo) == 2 * sizeof(OfPack) && std::is_trivially_copy_constructible_v<OfPack>;
 
 template <class Law>
 constexpr bool state_is_given() {

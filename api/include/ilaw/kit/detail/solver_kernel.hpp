@@ -176,8 +176,8 @@ struct open_problems {
     for (int c = 0; c < parameter_count<Law>; ++c)
       if (varying >> c & 1) {
         for (int k = filled; k < solver_pack::size; ++k) parameter[c][first + k] = parameter[c][first];
-        __builtin_memcpy(&solver::parameters[c].member.varying_in(law), parameter[c] + first,
-                         sizeof(solver_pack));
+        __builtin_memcpy(static_cast<void*>(&solver::parameters[c].member.varying_in(law)),
+                         parameter[c] + first, sizeof(solver_pack));
       }
   }
   [[gnu::noinline]] void solve_scalar(const Law& given, const step_sizes& step, int k) {
