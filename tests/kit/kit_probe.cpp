@@ -283,6 +283,28 @@ struct promise_breaker {
   }
 };
 
+// Remembers one direction in the plane of contact: nothing in one dimension.
+template <class V>
+struct path_probe {
+  V factor;
+
+  static constexpr law_card card{.id = "path_probe", .title = "A path", .doc = "Adds v_T up."};
+  static constexpr auto& references = no_references;
+  static constexpr parameter<path_probe> parameters[] = {
+      {.member = &path_probe::factor, .name = "factor", .doc = "Of v_T.", .default_value = 1.0}};
+  struct state {
+    tangential_vector<V> path;
+  };
+  static constexpr state_variable<state> state_variables[] = {
+      {.member = &state::path, .name = "path", .unit = "m/s", .doc = "Sum of v_T."}};
+  template <class Node>
+  status_of<V> step(Node& node) const {
+    node.state.path.t1 = node.state.path.t1 + factor * node.v_free.t1;
+    node.state.path.t2 = node.state.path.t2 + factor * node.v_free.t2;
+    return status::free;
+  }
+};
+
 // Its impulse is a plain copy of an input.
 template <class V>
 struct copy_probe {
@@ -306,4 +328,4 @@ struct copy_probe {
 }  // namespace
 
 ILAW_PLUGIN("kit_probe", "1.0.0", "tests", "BSD-3-Clause", kit_probe, pack_probe, solver_probe, limit_probe,
-            node_limit_probe, promise_breaker, copy_probe)
+            node_limit_probe, promise_breaker, path_probe, copy_probe)

@@ -117,6 +117,33 @@ TEST(StateVariables, HaveTheSizeOfTheirKind) {
   }
 }
 
+// One tangential vector alone is a state of nothing in one dimension.
+TEST(StateVariables, MayBeOneTangentialVector) {
+  for (const std::uint32_t d : {1U, 2U, 3U}) {
+    const ilaw::interface law = make_tested_law("path_probe", SetupBuilder({}, d));
+    ASSERT_EQ(law.info().state_size, d - 1);
+    constexpr std::size_t count = 21;
+    std::vector<double> v(count * d, 2.0), r(count * d, 1.0), state(count * (d - 1), 0.5);
+    const double h = 1.0, gap = 1.0;
+    const auto size = static_cast<std::int64_t>(d);
+    ilaw_batch b{};
+    b.struct_size = sizeof b;
+    b.node_count = count;
+    b.velocity_step = b.position_step = 1e-3;
+    b.v_free = ilaw::input(v.data(), size, 1);
+    b.delassus = ilaw::input(&h, 0, 0);
+    b.gap = ilaw::input(&gap, 0, 0);
+    b.impulse = ilaw::output(r.data(), size, 1);
+    if (d > 1) {
+      b.state_in = ilaw::input(state.data(), size - 1, 1);
+      b.state_out = ilaw::output(state.data(), size - 1, 1);
+    }
+    ASSERT_EQ(law.evaluate(b), ILAW_OK) << d;
+    EXPECT_EQ(r, std::vector<double>(count * d, 0.0));
+    EXPECT_EQ(state, std::vector<double>(count * (d - 1), 2.5));
+  }
+}
+
 // Hosts find the variables in the order in which they are described: that of struct state, which is another
 // one in kit_probe, is the law's own affair.
 TEST(StateVariables, StandInTheOrderOfTheirEntries) {

@@ -157,7 +157,7 @@ class batch_walk {
   // ---- state
 
   void open_state(view<Number>& v, const node_range& n) {
-    if (made_.state_size == 0) return;
+    if (made_.state_size == 0 && made_.states == 0) return;
     copy_unnamed(n);
     double* const in = state_scratch_;
     double* const out = in + made_.states * block_nodes;
