@@ -75,10 +75,6 @@ struct slip_weakening : changing_friction<slip_weakening, weakening, V> {
       heat_partition_parameter(&slip_weakening::heat_partition),
       wear_coefficient_parameter(&slip_weakening::wear_coefficient)};
 
-  static constexpr amount_card amounts[] = {
-      {.name = "steepness",
-       .doc = "h h_T r_N (mu_s - mu_d)/(4 D_c) while the node weakens; above 1 several slips are possible."}};
-
   struct state {
     V slip;
   };
@@ -106,9 +102,6 @@ struct slip_weakening : changing_friction<slip_weakening, weakening, V> {
   template <class Node>
   void slide(Node& node, V speed) const {
     const auto pressed = node.impulse.n > 0.0;
-    const V fall = -coefficient_in(node)(speed).slope;
-    const V steep = node.delassus.largest_tangential() * node.impulse.n * fall;
-    node.amounts[0] = zero_unless(pressed & (fall > 0.0), steep);
     const V path = 0.5 * node.velocity_step * (node.v_previous.tangential_length() + speed);
     node.state.slip = node.state.slip + zero_unless(pressed, path);
   }

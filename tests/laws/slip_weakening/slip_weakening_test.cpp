@@ -92,30 +92,6 @@ TEST(SlipWeakening, IsContinuousInTheCoupling) {
   }
 }
 
-// The amount: h h_T r_N (mu_s - mu_d)/(4 D_c) while the node weakens.
-double steepness_of(NodeRun& node, const Vector& v_free) {
-  std::array<double, 4> found{};  // heat, counterpart_heat and wear after it
-  std::array<ilaw_output, 4> amounts{};
-  for (std::size_t k = 0; k < found.size(); ++k) amounts[k] = ilaw::output(&found[k], 0, 1);
-  node.v_free = v_free;
-  ilaw_batch b = node.batch();
-  b.state_in = ilaw::input(node.state.data(), 0, 1);
-  b.state_out = ilaw::output(node.state.data(), 0, 1);
-  b.impulse = ilaw::output(node.r.data(), 0, 1);
-  b.amounts = amounts.data();
-  EXPECT_EQ(node.interface.evaluate(b), ILAW_OK);
-  return found[0];
-}
-TEST(SlipWeakening, GivesItsSteepness) {
-  const Weakening law{0.6, 0.1, 0.01};
-  NodeRun node("slip_weakening", law.parameters(), 0.02, ILAW_DELASSUS_TRANSVERSE);
-  node.h = {0.5, 0.8};
-  EXPECT_NEAR(steepness_of(node, {-1.0, 0.5, 0.0}), 0.02 * 0.8 * 2.0 * 0.5 / 0.04, 1e-15);
-  EXPECT_EQ(steepness_of(node, {1.0, 3.0, 0.0}), 0.0);  // free
-  node.state = {0.02};
-  EXPECT_EQ(steepness_of(node, {-1.0, 3.0, 0.0}), 0.0);  // weakened
-}
-
 // Only what slips under pressure weakens, and a coefficient does not rise with the slip.
 TEST(SlipWeakening, DoesNotSlipInTheAirOrRise) {
   NodeRun node("slip_weakening", Weakening{0.3, 0.7, 0.01}.parameters(), 0.01);
