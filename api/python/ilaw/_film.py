@@ -71,11 +71,19 @@ class Surface(NamedTuple):
     """Facets that are drawn, over nodes that are drawn; nodes are numbers of the model."""
 
     nodes: np.ndarray
-    triangles: np.ndarray
+    polygons: list[np.ndarray]  # of three corners, of four
     edges: np.ndarray
     offset: np.ndarray  # of the drawn node from the model's: bars have a height
-    is_points: bool
-    facets: np.ndarray  # a node of each
+    is_points: bool = False
+
+    @property
+    def triangles(self) -> np.ndarray:
+        return triangles_of(self.polygons)
+
+    @property
+    def facets(self) -> np.ndarray:
+        """A node of each."""
+        return np.concatenate([p[:, 0] for p in self.polygons]) if self.polygons else np.empty(0, int)
 
 
 def edges_of(polygons: Iterable[np.ndarray]) -> np.ndarray:
@@ -102,7 +110,7 @@ def surface_of(grid: Grid) -> Surface:
     kinds = set(np.unique(vtk_to_numpy(grid.data.GetCellTypesArray())).tolist())
     if kinds <= {1}:
         nodes = np.arange(len(grid.points))
-        return Surface(nodes, np.empty((0, 3), int), np.empty((0, 2), int), np.zeros((len(nodes), 3)), True, nodes[:0])
+        return Surface(nodes, [], np.empty((0, 2), int), np.zeros((len(nodes), 3)), True)
     if kinds == {3}:
         return ribbons(grid.points, vtk_to_numpy(grid.data.GetCells().GetConnectivityArray()).reshape(-1, 2))
     extractor = vtkDataSetSurfaceFilter()
@@ -116,8 +124,7 @@ def surface_of(grid: Grid) -> Surface:
     sizes = np.diff(starts)
     polygons = [ids[corners[starts[:-1][sizes == n][:, None] + np.arange(n)]] for n in (3, 4)]
     nodes, polygons = compact(polygons)
-    facets = np.concatenate([p[:, 0] for p in polygons])
-    return Surface(nodes, triangles_of(polygons), edges_of(polygons), np.zeros((len(nodes), 3)), False, facets)
+    return Surface(nodes, polygons, edges_of(polygons), np.zeros((len(nodes), 3)))
 
 
 def ribbons(points: np.ndarray, lines: np.ndarray) -> Surface:
@@ -126,7 +133,7 @@ def ribbons(points: np.ndarray, lines: np.ndarray) -> Surface:
     offset = np.zeros((2 * count, 3))
     offset[:count, 1], offset[count:, 1] = -height, height
     nodes = np.concatenate([np.arange(count)] * 2)
-    return Surface(nodes, triangles_of([quads]), edges_of([quads]), offset, False, quads[:, 0])
+    return Surface(nodes, [quads], edges_of([quads]), offset)
 
 
 def thinned(surface: Surface, points: np.ndarray, bodies: list[Body], share: float) -> Surface:
@@ -145,7 +152,39 @@ def thinned(surface: Surface, points: np.ndarray, bodies: list[Body], share: flo
     _, first = np.unique(np.sort(triangles, axis=1), axis=0, return_index=True)
     triangles = triangles[np.sort(first)]
     edges = np.empty((0, 2), int)
-    return Surface(surface.nodes[kept], triangles, edges, surface.offset[kept], surface.is_points, triangles[:, 0])
+    return Surface(surface.nodes[kept], [triangles], edges, surface.offset[kept], surface.is_points)
+
+
+class PushedFacets:
+    """Pressure of the forces on nodes, on facets that may be of either side: a surface has no traction of its own."""
+
+    def __init__(self, points: np.ndarray, surface: Surface) -> None:
+        self.corners = [surface.nodes[p] for p in surface.polygons]
+        first = np.cumsum([0, *(len(p) for p in self.corners)])
+        # Of each corner: its node, its facet, and its share of the undeformed facet.
+        self.node = np.concatenate([p.ravel() for p in self.corners])
+        self.facet = np.concatenate([np.repeat(k + np.arange(len(p)), p.shape[1]) for k, p in zip(first, self.corners)])
+        self.share = np.linalg.norm(self.vectors(points), axis=1)[self.facet] / np.bincount(self.facet)[self.facet]
+
+    def vectors(self, x: np.ndarray) -> np.ndarray:
+        """Area times outer normal of each facet: half the cross product of diagonals, or of two edges."""
+        found = []
+        for p in self.corners:
+            a, b, c, d = (x[p[:, k]] for k in ((0, 2, 1, 3) if p.shape[1] == 4 else (0, 1, 0, 2)))
+            found.append(0.5 * np.cross(b - a, d - c))
+        return np.concatenate(found)
+
+    def pressure(self, x: np.ndarray, force: np.ndarray) -> np.ndarray:
+        """Of all nodes: over those of their facets that the force pushes within 60 degrees of the normal."""
+        normal = self.vectors(x)
+        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+        size = np.linalg.norm(force, axis=1)
+        along = -(normal[self.facet] * force[self.node]).sum(axis=1)
+        is_pushed = along > 0.5 * size[self.node]
+        node, share = self.node[is_pushed], self.share[is_pushed]
+        area = np.bincount(node, weights=share, minlength=len(x))
+        pushed = np.bincount(node, weights=share * along[is_pushed], minlength=len(x))
+        return np.divide(pushed, area * area, out=np.full(len(x), np.nan), where=area > 0)
 
 
 class InterfaceFields:
@@ -265,17 +304,22 @@ def forces_entry(run: Run, blocks: Blocks, drawn: np.ndarray, frames: np.ndarray
 class Film:
     """Frames of all fields, added one by one."""
 
-    def __init__(self, run: Run, first: Grid, surface: Surface, times: list[float]) -> None:
+    def __init__(self, run: Run, first: Grid, whole: Surface, surface: Surface, times: list[float]) -> None:
+        """whole: the surface before nodes of it were left out."""
         self.run, self.surface, self.times = run, surface, times
         self.obstacles = {o["interface"]: o for o in run.obstacles(np.array(times))}
         self.u, self.fields, self.forces = Channel(), {}, Channel()
-        self.interfaces = [InterfaceFields(run, first, k, surface) for k in range(len(run.interfaces))]
+        self.interfaces = [InterfaceFields(run, first, k, whole) for k in range(len(run.interfaces))]
         of_interfaces = np.unique(np.concatenate([[], *(i.nodes for i in self.interfaces)]).astype(int))
         self.drawn = np.full(len(first.points), -1)
         self.drawn[surface.nodes[::-1]] = np.arange(len(surface.nodes))[::-1]
         counterparts = any("obstacle" not in i for i in run.interfaces)  # these also push on other nodes
+        self.facets = PushedFacets(first.points, whole) if counterparts and run.dimension == 3 and whole.polygons else None
         self.pushed = surface.nodes if counterparts else of_interfaces[self.drawn[of_interfaces] >= 0]
         self.pushed = np.unique(self.pushed)
+        self.is_both_sided = np.zeros(len(first.points), bool)  # nodes that push, and are pushed by those they meet
+        for fields in self.interfaces:
+            self.is_both_sided[fields.nodes] |= "against" in fields.interface and fields.interface.get("area_factor", 1) != 1
         self.force_frames: list[np.ndarray] = []
 
     def add_field(self, name: str, nodes: Optional[np.ndarray], values: np.ndarray, interface: str = "") -> None:
@@ -297,14 +341,19 @@ class Film:
             self.add_field("temperature", None, grid.nodes["temperature"])
         self.force_frames.append((grid.nodes["r"][self.pushed] / self.run.summary["dt"]).astype(np.float32))
         together: dict[str, np.ndarray] = {}
+        several = len(self.interfaces) > 1 or self.facets is not None
         for fields in self.interfaces:
             name = fields.interface["name"]
             obstacle, speed = self.obstacles.get(name), self.speed_of(name, frame)
             for key, values in fields.values(grid, obstacle, frame, speed).items():
                 self.add_field(key, fields.nodes, values, name)
-                if len(self.interfaces) > 1 and key in ("pressure", "status"):
+                if several and key in ("pressure", "status"):
                     whole = together.setdefault(key, np.full(len(grid.points), np.nan))
                     whole[fields.nodes] = np.fmax(whole[fields.nodes], values)
+        if self.facets:
+            on_both = self.facets.pressure(grid.points + grid.nodes["u"], grid.nodes["r"] / self.run.summary["dt"])
+            own = together["pressure"]
+            own[:] = np.where(np.isnan(own) | self.is_both_sided, on_both, own)
         for key, whole in together.items():
             self.add_field(key, None, whole, "all interfaces")
 
@@ -367,23 +416,24 @@ def film_of_fields(run: Run, blocks: Blocks, megabytes: float, notes: list[str])
 
     def film(chosen: list[int], with_surface: Surface) -> Film:
         times = [files[k][0] for k in chosen]
-        made = Film(run, first, with_surface, times)
+        made = Film(run, first, surface, with_surface, times)
         for frame, k in enumerate(chosen):
             made.add(read_grid(files[k][1]), frame)
         return made
 
+    drawn = surface
     allowed = megabytes * 1e6 * 3 / 4  # base64 writes 3 bytes as 4 letters
     if len(surface.nodes) * len(files) * 20 > allowed:
         per_frame = max(film([k], surface).size() for k in (len(files) // 2, len(files) - 1)) or 1
         chosen = frames_to_show(len(files), max(LEAST_FRAMES, int(allowed / per_frame)))
         if per_frame * len(chosen) > allowed and len(surface.nodes) > 1000:
             share = allowed / (per_frame * len(chosen))
-            before = len(surface.nodes)
-            surface = thinned(surface, first.points, run.bodies(), share)
-            notes.append(f"{len(surface.nodes)} of {before} surface nodes are drawn: a larger --megabytes draws more.")
+            drawn = thinned(surface, first.points, run.bodies(), share)
+            left = f"{len(drawn.nodes)} of {len(surface.nodes)} surface nodes are drawn"
+            notes.append(f"{left}: a larger --megabytes draws more.")
         if len(chosen) < len(files):
             notes.append(f"{len(chosen)} of {len(files)} frames are shown: a larger --megabytes shows more.")
     else:
         chosen = list(range(len(files)))
-    made = film(chosen, surface)
+    made = film(chosen, drawn)
     return made.finish(blocks, first.points), made.times
