@@ -5,9 +5,10 @@ from pathlib import Path
 
 import pytest
 
-nbformat = pytest.importorskip("nbformat", reason="no Jupyter here: apt-get install python3-nbconvert python3-ipykernel")
-pytest.importorskip("ipykernel", reason="no Jupyter here: apt-get install python3-nbconvert python3-ipykernel")
-preprocessors = pytest.importorskip("nbconvert.preprocessors", reason="no Jupyter here: apt-get install python3-nbconvert")
+MISSING = "no Jupyter here: apt-get install python3-nbconvert python3-ipykernel"
+nbformat = pytest.importorskip("nbformat", reason=MISSING)
+pytest.importorskip("ipykernel", reason=MISSING)
+preprocessors = pytest.importorskip("nbconvert.preprocessors", reason=MISSING)
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs/notebooks"
 

@@ -229,8 +229,8 @@ def test_frames_are_left_out_before_nodes(boxes, tmp_path):
 
 
 def test_thinned_surface_keeps_its_shape():
-    from ilaw._film import Surface, edges_of, thinned
     from ilaw._results import Body
+    from ilaw._surfaces import Surface, edges_of, thinned
 
     n = 100
     x = np.array([[i, j, 0.0] for j in range(n + 1) for i in range(n + 1)])
