@@ -42,7 +42,7 @@ MOVING = [
 
 STYLE = """
 body { font: 16px/1.5 sans-serif; max-width: 1100px; margin: 2em auto; padding: 0 1em; color: #222 }
-iframe { width: 100%; height: 560px; border: 1px solid #bbb } img { max-width: 100% }
+iframe { width: 100%; height: 640px; border: 1px solid #bbb } img { max-width: 100% }
 ul { columns: 3 } summary { cursor: pointer; color: #0072b2 }
 """
 
