@@ -29,6 +29,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "api/python"), str(ROOT / "docs")]
 sys.dont_write_bytecode = True
 
+import make_compared  # noqa: E402
 import make_gallery  # noqa: E402
 import make_moving  # noqa: E402
 import make_sketches  # noqa: E402
@@ -151,6 +152,11 @@ def moving(name: str) -> Picture:
     return Picture(f"docs/img/moving_{name}.webp", lambda _: said, draw, [f"{path}.json"])
 
 
+def compared() -> Picture:
+    said = json.dumps([make_compared.scene("law"), make_compared.scene("penalty"), make_compared.ROWS])
+    return Picture("docs/img/compared.webp", lambda _: said.encode(), make_compared.draw)
+
+
 # ---- pictures of tables and sketches ---------------------------------------------------------------------------------
 
 
@@ -207,7 +213,7 @@ def of_sketch(function: Callable[[], None]) -> Picture:
 
 def pictures() -> list[Picture]:
     measured = [Picture(path, lambda _: b"", None, [source]) for path, source in MEASURED.items()]
-    runs = [*pictures_of_runs(), gallery(), *map(moving, make_moving.SCENES)]
+    runs = [*pictures_of_runs(), gallery(), compared(), *map(moving, make_moving.SCENES)]
     return [*runs, *map(of_table, CONVERGED), *map(of_sketch, make_sketches.PICTURES), *measured]
 
 

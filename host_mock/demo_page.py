@@ -24,12 +24,14 @@ from ilaw import plot, view  # noqa: E402
 
 # Scene, steps per frame, and what there is to be seen.
 MOVING = [
-    ("tests/host/analyst_scenes/tread_on_ball", 14,
-     "A rubber block of a tire is pressed on a stone and dragged over it; the color is its stress."),
+    ("tests/host/analyst_scenes/tread_blocks", 10,
+     "Tread blocks of two tires pass the road: one rolls and grips, the other brakes, shears and skids."),
     ("tests/host/analyst_scenes/tape_peeled", 35,
      "An adhesive tape is peeled off at a right angle: its bond softens and tears from one end to the other."),
     ("host_mock/scenes/two_blocks", 1,
      "Two soft blocks, whose meshes do not match, fall on each other and on the floor, stick, slip and part."),
+    ("tests/host/analyst_scenes/arch", 10,
+     "Two arches of stones without mortar: one is thick enough and stands, the other is too thin and falls."),
     ("tests/host/analyst_scenes/stack", 4,
      "Three blocks fall on each other and come to rest as a stack, held by contact and friction alone."),
     ("tests/host/analyst_scenes/hail", 10,
@@ -40,7 +42,7 @@ MOVING = [
 
 STYLE = """
 body { font: 16px/1.5 sans-serif; max-width: 1100px; margin: 2em auto; padding: 0 1em; color: #222 }
-iframe { width: 100%; height: 560px; border: 1px solid #bbb } img { max-width: 100% }
+iframe { width: 100%; height: 640px; border: 1px solid #bbb } img { max-width: 100% }
 ul { columns: 3 } summary { cursor: pointer; color: #0072b2 }
 """
 
@@ -50,6 +52,8 @@ def run_moving(path: str, every: int, folder: Path) -> Path:
     scene = ROOT / f"{path}.json"
     source: dict[str, Any] = json.loads(scene.read_text(encoding="utf-8"))
     source["output"] = {**source.get("output", {}), "fields": every, "balance": True, "events": True}
+    for mesh in source["model"].get("meshes", []):
+        mesh["file"] = str(scene.parent / mesh["file"])
     copy, results = folder / f"{scene.stem}.json", folder / scene.stem
     copy.write_text(json.dumps(source), encoding="utf-8")
     program = ROOT / "build/release/bin/ilaw"

@@ -17,7 +17,7 @@ site=(doxygen python3-breathe python3-myst-parser furo libjs-katex)  # docs/site
 case ${1:-} in
   tests) packages+=("${for_tests[@]}") ;;
   ci) packages+=("${for_tests[@]}" "${solvers[@]}" "${site[@]}" "${documents[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache chromium
-                  llvm-14 llvm-spirv-14 pocl-opencl-icd ocl-icd-opencl-dev) ;;
+                  llvm-14 llvm-spirv-14 pocl-opencl-icd ocl-icd-opencl-dev python3-nbconvert python3-ipykernel python3-scipy) ;;
   site) packages=("${site[@]}") ;;
   dealii) packages+=("${for_tests[@]}" "${dealii[@]}") ;;
   results) packages+=("${for_tests[@]}" jq) ;;

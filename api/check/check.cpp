@@ -167,8 +167,13 @@ const Rule& rule_of(const char* id) {
 // A law's rules, those first that others need.
 class LawCheck {
  public:
-  LawCheck(std::string file, std::string law, const Options& options, std::vector<Outcome>& outcomes)
-      : file_(std::move(file)), law_(std::move(law)), options_(options), outcomes_(outcomes) {}
+  LawCheck(std::string file, std::string law, const Options& options, std::vector<Outcome>& outcomes,
+           Progress& progress)
+      : file_(std::move(file)),
+        law_(std::move(law)),
+        options_(options),
+        outcomes_(outcomes),
+        progress_(progress) {}
 
   void run() {
     const std::size_t first = outcomes_.size();
@@ -181,6 +186,11 @@ class LawCheck {
     }
   }
 
+  static bool is_basic(const Rule& rule) {
+    return rule.id == std::string(opens_id) || rule.id == std::string(creates_id) ||
+           rule.id == std::string(returns_id);
+  }
+
  private:
   void judge_all() {
     holds(creates_id, creates_);
@@ -190,7 +200,10 @@ class LawCheck {
       if (wanted(rule, options_) && !is_basic(rule)) left.push_back(&rule);
     const std::size_t first = outcomes_.size();
     outcomes_.resize(first + left.size());
-    in_parallel(left.size(), [&](std::size_t k) { outcomes_[first + k] = judge(*left[k]); });
+    in_parallel(left.size(), [&](std::size_t k) {
+      outcomes_[first + k] = judge(*left[k]);
+      progress_.add(1.0);
+    });
   }
 
   Outcome judge(const Rule& rule) const {
@@ -201,10 +214,6 @@ class LawCheck {
     return judge_apart(file_, law_, rule, options_);
   }
 
-  static bool is_basic(const Rule& rule) {
-    return rule.id == std::string(opens_id) || rule.id == std::string(creates_id) ||
-           rule.id == std::string(returns_id);
-  }
   // Kept in the outcomes where it was asked for, or is why others are not judged.
   void holds(const char* id, bool& found) {
     const Outcome outcome = judge_apart(file_, law_, rule_of(id), options_);
@@ -218,6 +227,7 @@ class LawCheck {
   std::string file_, law_;
   const Options& options_;
   std::vector<Outcome>& outcomes_;
+  Progress& progress_;
   bool creates_ = false, returns_ = false;
   Reach all_;  // what the rules reached together
 };
@@ -299,8 +309,14 @@ std::vector<Outcome> check(const std::string& name_or_path, const Options& optio
   const Opened opened = open(name_or_path, options, outcomes);
   check_law(opened, options.law);
   check_parameters(opened, options);
+  const auto is_chosen = [&](const std::string& law) { return options.law.empty() || options.law == law; };
+  const auto laws = std::count_if(opened.laws.begin(), opened.laws.end(), is_chosen);
+  const auto rules_of_law = std::count_if(rules().begin(), rules().end(), [&](const Rule& rule) {
+    return wanted(rule, options) && !LawCheck::is_basic(rule);
+  });
+  Progress progress("check", "rules", static_cast<double>(laws * rules_of_law), options.progress);
   for (const std::string& law : opened.laws)
-    if (options.law.empty() || options.law == law) LawCheck(opened.path, law, options, outcomes).run();
+    if (is_chosen(law)) LawCheck(opened.path, law, options, outcomes, progress).run();
   return outcomes;
 }
 

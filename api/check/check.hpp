@@ -3,6 +3,7 @@
 #pragma once
 
 #include "check/finding.hpp"
+#include "check/progress.hpp"
 #include "check/reach.hpp"
 #include "check/sandbox.hpp"
 #include "check/trial.hpp"
@@ -22,6 +23,7 @@ struct Options {
   std::vector<std::uint64_t> seeds{1, 2, 3};
   std::optional<Values> parameters;  // of every instance of the law, instead of drawn ones
   Limits limits;                     // of a rule, a law and a seed
+  ProgressForm progress = ProgressForm::none;
 };
 
 enum class Verdict { passed, broken, not_judged };

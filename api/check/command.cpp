@@ -113,6 +113,8 @@ std::function<int()> add_options(CLI::App& command) {
   command.add_flag("--json", line->as_json, "Print an array of objects, one for each rule and law");
   command.add_option("--junit", line->junit, "Also write a report in JUnit's XML");
   command.add_flag("--rules", line->rules, "Print the table of rules");
+  line->check.progress = ProgressForm::line;
+  add_progress(command, line->check.progress);
   return [line] { return check_library(*line); };
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
+#include "check/progress.hpp"
 #include "cli/guard.hpp"
 #include "study/convergence.hpp"
 
@@ -19,6 +20,7 @@ using nlohmann::json;
 struct ConvergeOptions {
   std::filesystem::path scene, folder;
   SweepOptions sweep;
+  check::ProgressForm progress = check::ProgressForm::line;
 };
 
 // A number in ten columns.
@@ -50,7 +52,11 @@ int converge(const ConvergeOptions& options) {
   const std::string title = source.value("title", options.scene.stem().string());
   check_sweep(source, sweep, options.scene);  // before anything is written
   const HeldFolder held(folder);
-  const ErrorTable table = run_levels(source, sweep, options.scene);
+  const ErrorTable table = [&] {
+    check::Progress progress("converge", "steps", 1.0, options.progress);
+    return run_levels(source, sweep, options.scene,
+                      [&](double done, double total) { progress.set(done, total); });
+  }();
   remove_pictures(folder);
   write_convergence(table, sweep, title, folder);
   print_table(table);
@@ -67,6 +73,7 @@ void add_converge(CLI::App& app, int& code) {
   command->add_option("--out", options->folder, "Folder for converge.csv and .json, which `ilaw plot` draws")
       ->required();
   add_sweep(*command, options->sweep, "Number of runs, the scene's own included", CLI::Range(2, 12));
+  check::add_progress(*command, options->progress);
   command->footer("Example: ilaw converge host_mock/scenes/bar_on_wall.json --out results");
   command->callback(
       [options, &code] { code = in_scene(options->scene, [&] { return converge(*options); }); });

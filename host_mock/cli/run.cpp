@@ -20,6 +20,7 @@
 #include "scene/read_meshes.hpp"
 #include "scene/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -62,17 +63,18 @@ class Run {
 
   // Steps to the end, to a request to stop, or to a failure; the record says which.
   void advance() {
-    std::optional<Progress> progress;
-    if (options_.shows_progress) progress.emplace(integrator_.steps(), scene_.steps);
     try {
       if (!options_.resume) start();
+      check::Progress own("run", "steps", static_cast<double>(scene_.steps), options_.progress);
+      check::Progress& progress = options_.shared ? *options_.shared : own;
+      own.begin_at(static_cast<double>(integrator_.steps()));
       while (integrator_.steps() < scene_.steps && !stop_requested()) {
         integrator_.step();
         tell_of_stable_step();
         history_->add_step(integrator_);
         if (events_) events_->add_step(integrator_);
         write_outputs();
-        if (progress) progress->show(integrator_.steps());
+        progress.add(1.0);
       }
       record.interrupted = integrator_.steps() < scene_.steps;
       check_results();
@@ -162,13 +164,30 @@ class Run {
   }
 
   void start() {
-    integrator_.start();
+    find_equilibrium();
     if (const auto& found = integrator_.prestressed(); found && options_.tells_of_start)
       std::printf("prestress: static equilibrium after %lld steps, residual %.2g\n",
                   static_cast<long long>(found->steps), found->residual);
     history_->add_start(integrator_);
     if (events_) events_->add_step(integrator_);
     if (scene_.output.fields > 0) fields_.write(integrator_);
+  }
+
+  // The logarithm of the residual falls in about a straight line, from which follows how many steps there
+  // are.
+  void find_equilibrium() {
+    if (!scene_.prestress) return integrator_.start();
+    const double most = scene_.prestress->ramp / scene_.dt + static_cast<double>(scene_.prestress->steps);
+    check::Progress progress("prestress", "steps", most, options_.progress);
+    double first = 0.0, steps = 0.0;
+    integrator_.start([&](const PrestressReport& found) {
+      if (first == 0.0) first = found.residual;
+      steps = static_cast<double>(found.steps);
+      const double all = std::log(first / scene_.prestress->tolerance),
+                   done = std::log(first / found.residual);
+      progress.set(steps, done > 0.0 && all > 0.0 ? std::min(steps * all / done, most) : most);
+    });
+    progress.set(steps, steps);
   }
 
   // At once, for the run may take long; the summary has it, too.
@@ -337,6 +356,7 @@ void add_run(CLI::App& app, int& code) {
   command->add_flag("--resume", options->resume,
                     "Continue from the checkpoint in the folder, to the same bits");
   add_threads(*command, options->threads);
+  check::add_progress(*command, options->progress);
   command
       ->add_option("--tolerance", options->tolerance,
                    "Residual to which contacts that share nodes are solved, relative to the largest velocity "

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "check/progress.hpp"
 #include "scene/scene.hpp"
 
 #include <cstdint>
@@ -18,8 +19,9 @@ struct RunOptions {
   bool resume = false;
   int threads = 1;
   std::optional<double> tolerance = {};  // of coupled contacts
-  bool shows_progress = true;
-  bool tells_of_start = true;  // on stdout
+  check::ProgressForm progress = check::ProgressForm::line;
+  check::Progress* shared = nullptr;  // that of a sweep, which counts the steps of its runs
+  bool tells_of_start = true;         // on stdout
 };
 
 // Runs a scene that was read into options.folder, which it makes and holds; says on stderr what goes wrong.

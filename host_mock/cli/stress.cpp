@@ -4,6 +4,7 @@
 
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
+#include "check/progress.hpp"
 #include "cli/commands.hpp"
 #include "cli/guard.hpp"
 #include "cli/terminal.hpp"
@@ -37,14 +38,14 @@ void print_finding(const char* ending, const StressFinding& finding) {
               finding.file.c_str());
 }
 
-int run_stress(const StressSetup& setup) {
+int run_stress(const StressSetup& setup, check::ProgressForm form) {
   std::optional<HeldFolder> kept, written;
   if (!setup.keep.empty()) kept.emplace(setup.keep);
   if (!setup.write.empty()) written.emplace(setup.write);
   name_crashes();
   const StressReport report = [&] {
-    Progress progress(0, setup.scenes);
-    return stress(setup, [&](std::int64_t done) { progress.show(done); });
+    check::Progress progress("stress", "scenes", static_cast<double>(setup.scenes), form);
+    return stress(setup, [&](std::int64_t) { progress.add(1.0); });
   }();
   if (report.rows.empty()) throw InputError("found no law on the search path, " + ilaw::search_path());
   print_table(report);
@@ -57,6 +58,7 @@ int run_stress(const StressSetup& setup) {
 
 void add_stress(CLI::App& app, int& code) {
   const auto setup = std::make_shared<StressSetup>();
+  const auto form = std::make_shared<check::ProgressForm>(check::ProgressForm::line);
   CLI::App* command = app.add_subcommand(
       "stress", "Run random scenes of all laws and hold them to rules on energy, penetration and bits");
   command->add_option("--law", setup->laws,
@@ -76,12 +78,13 @@ void add_stress(CLI::App& app, int& code) {
   command->add_option("--keep", setup->keep,
                       "Folder for scenes that failed, each reduced while it still fails");
   command->add_option("--write", setup->write, "Folder for every scene, as it is run; not that of --keep");
+  check::add_progress(*command, *form);
   command->footer(
       "coupled: contacts of several bodies made from a solution, which is known to exist; unsolved of them.\n"
       "Exit codes: 0 all scenes kept the rules, were refused, or stopped with a reason; 1 a scene broke one;\n"
       "2 bad usage, or a library that cannot be opened.\n"
       "Example: ilaw stress --law build/my_law.so --scenes 200 --keep failures");
-  command->callback([setup, &code] { code = run_stress(*setup); });
+  command->callback([setup, form, &code] { code = run_stress(*setup, *form); });
 }
 
 }  // namespace ilaw::host

@@ -4,6 +4,7 @@
 
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
+#include "check/progress.hpp"
 #include "cli/guard.hpp"
 #include "cli/terminal.hpp"
 #include "scene/scene.hpp"
@@ -27,6 +28,7 @@ struct StudyOptions {
   std::filesystem::path folder;
   std::vector<std::string> laws;
   SweepOptions sweep;
+  check::ProgressForm progress = check::ProgressForm::line;
   std::optional<int> repetitions;  // what a scene says under "study", unless given
 };
 
@@ -81,7 +83,10 @@ int study_scene(const std::filesystem::path& file, const std::filesystem::path& 
   const std::string title = source.value("title", file.stem().string());
   check_study(source, setup, file);  // before anything is written
   const HeldFolder held(folder);
-  const Study study = run_study(source, setup, file);
+  const Study study = [&] {
+    check::Progress progress("study", "runs", 1.0, options.progress);
+    return run_study(source, setup, file, [&](double done, double total) { progress.set(done, total); });
+  }();
   remove_pictures(folder);
   write_study(study, title, folder);
   std::printf("%s, against the %s\n", printable(title).c_str(),
@@ -130,6 +135,7 @@ void add_study(CLI::App& app, int& code) {
       ->take_all()
       ->allow_extra_args(false);
   add_sweep(*command, options->sweep, "Runs per law", CLI::Range(1, 30));
+  check::add_progress(*command, options->progress);
   command
       ->add_option("--repetitions", options->repetitions,
                    "Repetitions of each run, for the median of its times")

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <cstdio>
 #include <set>
 
@@ -154,7 +155,6 @@ int run_variant(const Variant& variant, const std::vector<Setting>& settings, co
                 const RunOptions& options) {
   RunOptions own = options;
   own.folder = options.folder / variant.name;
-  own.shows_progress = false;
   own.tells_of_start = false;  // bars of several runs would overwrite each other
   try {
     Scene scene = scene_of(variant, settings, source, options.scene);
@@ -192,6 +192,7 @@ int sweep(const RunOptions& options, const std::vector<std::string>& texts) {
   std::vector<Variant> variants;
   json source;
   std::string name;
+  std::int64_t steps = 0;
   name_crashes();
   set_threads(1);  // one in each process; none here, which starts processes
   warn_of_search_path();
@@ -201,7 +202,7 @@ int sweep(const RunOptions& options, const std::vector<std::string>& texts) {
     source = read_scene_source(options.scene);
     for (const Variant& variant : variants) {
       name = variant.name;
-      scene_of(variant, settings, source, options.scene);
+      steps += scene_of(variant, settings, source, options.scene).steps;
     }
   } catch (const std::exception& error) {
     throw InputError(options.scene.string() + ": " + (name.empty() ? name : name + ": ") + error.what() +
@@ -210,7 +211,13 @@ int sweep(const RunOptions& options, const std::vector<std::string>& texts) {
   catch_interrupts();
   const HeldFolder held(options.folder);
   remove_pictures(options.folder);  // of an earlier sweep
-  run_all(variants, settings, source, options);
+  {
+    check::Progress progress("runs", "steps", static_cast<double>(steps), options.progress);
+    RunOptions shared = options;
+    shared.progress = check::ProgressForm::none;
+    shared.shared = &progress;
+    run_all(variants, settings, source, shared);
+  }
   write_table(variants, options.folder);
   const auto failed =
       std::count_if(variants.begin(), variants.end(), [](const Variant& one) { return one.exit_code != 0; });

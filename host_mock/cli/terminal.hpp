@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -27,23 +26,5 @@ bool knows_instruction_set();
 
 // code, or exit_failed where stdout did not take all that was printed.
 int after_output(int code);
-
-// A bar with the remaining time, on a terminal only.
-class Progress {
- public:
-  // A run that starts at a step and ends after steps.
-  Progress(std::int64_t first, std::int64_t steps);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-
-  // Draws at most ten times a second.
-  void show(std::int64_t done);
-
- private:
-  std::int64_t first_, steps_;
-  bool terminal_, drawn_ = false;
-  double start_, last_;  // seconds
-};
 
 }  // namespace ilaw::host

@@ -1,6 +1,8 @@
 // Scenes as an analyst writes them: each runs without a warning and gives what can be derived by hand.
 #include "run_result.hpp"
 
+#include <numeric>
+
 namespace ilaw::host::testing {
 namespace {
 
@@ -39,7 +41,7 @@ TEST(AnalystScenes, RunWithoutWarningAndCloseTheirBalance) {
     EXPECT_EQ(run.summary["warnings"], json::array()) << file;
     EXPECT_LT(run.energy("balance_error"), 1e-11) << file;
   }
-  EXPECT_EQ(count, 12);
+  EXPECT_EQ(count, 14);
 }
 
 // The mesh is the one that its script makes. By statics the plate bears all of the force, below the wall
@@ -54,6 +56,33 @@ TEST(AnalystScenes, BracketBearsBelowItsWall) {
   EXPECT_NEAR(run.last("plate.F2"), 100.0, 1e-3);
   EXPECT_LT(std::abs(run.last("plate.M1")), 1e-3 * 100.0 * 0.003);
   EXPECT_GT(run.last("n420.gap"), 1e-6);
+}
+
+// Of a semicircular arch without mortar, the least thickness is 0.1075 of the mean radius (Milankovitch
+// 1907).
+TEST(AnalystScenes, ArchStandsOrFallsByItsThickness) {
+  const auto folder = fresh_folder(), scenes = file_of("arch").parent_path();
+  ASSERT_EQ(run_command("python3 " + (scenes / "arch.py").string() + " " + folder.string()).code, 0);
+  for (const char* made : {"arch.vtu", "arch.json"})
+    EXPECT_EQ(text_of(folder / made), text_of(scenes / made));
+  fs::remove_all(folder);
+  json scene = scene_named("arch");
+  scene["time"]["end"] = 0.45;
+  const Ran run = ran(scene);
+  EXPECT_GT(run.last("n36.u2"), -0.02);  // the crown of 0.15: elastic
+  EXPECT_LT(run.last("n124.u2"), -0.4);  // of 0.08
+}
+
+// A wheel that rolls does not pull; one that is braked drags its block with the friction of what slips.
+TEST(AnalystScenes, TreadBlockRollsFreelyAndSkidsWhenBraked) {
+  const Ran run = ran(scene_named("tread_blocks"));
+  const auto sum_of = [&](const char* name) {
+    return std::accumulate(run[name].begin(), run[name].end(), 0.0);
+  };
+  EXPECT_LT(std::abs(sum_of("grip.F0")), 0.02 * sum_of("grip.F2"));
+  EXPECT_GT(-sum_of("skid.F0"), 0.5 * sum_of("skid.F2"));
+  for (std::size_t k = 0; k < run["time"].size(); ++k)
+    EXPECT_LE(std::abs(run["skid.F0"][k]), 0.9 * run["skid.F2"][k] + 1e-9) << run["time"][k];
 }
 
 // At an angle theta a tape gives way by F (1 - cos theta) = G b (Rivlin 1944): at 90 degrees F = G b = 0.06.

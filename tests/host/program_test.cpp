@@ -289,12 +289,15 @@ TEST(Program, GoesOnAtAHangUpThatIsIgnored) {
 
 // ---- progress -------------------------------------------------------------------------------------------
 
-// The output of a run on a terminal of its own.
-std::string said_on_terminal(const std::string& scene, const fs::path& folder) {
+// The output of a command on a terminal of its own.
+std::string said_on_terminal(std::vector<std::string> words) {
   int terminal = -1;
   const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
   if (child == 0) {
-    execl(ILAW_PROGRAM, ILAW_PROGRAM, "run", scene.c_str(), "--out", folder.c_str(), nullptr);
+    std::vector<char*> arguments = {const_cast<char*>(ILAW_PROGRAM)};
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    execv(ILAW_PROGRAM, arguments.data());
     _exit(127);
   }
   std::string said;
@@ -308,16 +311,21 @@ std::string said_on_terminal(const std::string& scene, const fs::path& folder) {
   return said;
 }
 
-// A bar with its part done and the time left, redrawn in place and wiped in the end, before the line that
-// stays.
+json long_ball(double end) {
+  json scene = shipped("bouncing_ball");
+  scene["time"]["end"] = end;
+  scene["output"] = {{"every", 100000}};
+  return scene;
+}
+
+// A bar with its part done, the rate and the time left, redrawn in place and wiped in the end, before the
+// line that stays.
 TEST(Program, ShowsItsProgressOnATerminalOnly) {
   const auto folder = fresh_folder();
-  json scene = shipped("bouncing_ball");
-  scene["time"]["end"] = 200.0;
-  scene["output"] = {{"every", 100000}};
-  const std::string file = written(scene, folder);
-  const std::string said = said_on_terminal(file, folder);
-  const std::regex bar("\\r\\[(#*)(\\.*)\\] +([0-9]+) %  [0-9]+ s left ");
+  const std::string file = written(long_ball(300.0), folder);
+  const std::string said = said_on_terminal({"run", file, "--out", folder.string()});
+  const std::regex bar(
+      "\\r\033\\[Krun \\[(#*)(\\.*)\\] +([0-9]+) %  [0-9.e+]+ steps/s  [0-9.]+ (s|min|h) left ");
   int last = -1;
   std::ptrdiff_t bars = 0;
   for (std::sregex_iterator found(said.begin(), said.end(), bar), end; found != end; ++found, ++bars) {
@@ -329,7 +337,7 @@ TEST(Program, ShowsItsProgressOnATerminalOnly) {
     last = percent;
   }
   EXPECT_GE(bars, 1) << "too fast a machine, or no bar: " << said;
-  const auto wiped = said.rfind("\r\033[K"), result = said.find("steps to time 200");
+  const auto wiped = said.rfind("\r\033[K"), result = said.find("steps to time 300");
   ASSERT_NE(wiped, std::string::npos);
   ASSERT_NE(result, std::string::npos) << said;
   EXPECT_LT(wiped, result);
@@ -339,9 +347,48 @@ TEST(Program, ShowsItsProgressOnATerminalOnly) {
   EXPECT_EQ(std::count(piped.output.begin(), piped.output.end(), '\n'), 1);
 }
 
+std::vector<json> objects_in(const std::string& lines) {
+  std::vector<json> found;
+  std::istringstream stream(lines);
+  for (std::string line; std::getline(stream, line);)
+    if (line.starts_with("{\"task\"")) found.push_back(json::parse(line));
+  return found;
+}
+
+// Every long command tells the same of its work to machines, and ends with all of it.
+TEST(Program, TellsItsProgressInLinesOfJson) {
+  const auto folder = fresh_folder();
+  const std::string seal = (fs::path(ILAW_SOURCE) / "host_mock/scenes/prestressed_seal.json").string(),
+                    file = written(long_ball(50.0), folder), out = " --out " + folder.string();
+  const std::map<std::string, std::string> commands = {
+      {"run", "run " + file + out},
+      {"runs", "run " + file + " --set /time/end=40,50 --threads 2" + out},
+      {"stress", "stress --scenes 5 --steps 50"},
+      {"check", "check contact --only info-within --only info-same"},
+      {"study", "study " + ball + " --law contact --levels 2 --repetitions 1" + out},
+      {"converge", "converge " + ball + " --levels 2" + out},
+      {"prestress", "run " + seal + out}};
+  for (const auto& [task, command] : commands) {
+    const Outcome told = run_program(command + " --json-lines");
+    EXPECT_EQ(told.code, 0) << told.output;
+    std::vector<json> lines = objects_in(told.output);
+    std::erase_if(lines, [&](const json& line) { return line["task"] != task; });
+    ASSERT_FALSE(lines.empty()) << told.output;
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      EXPECT_GT(lines[k]["per_second"], 0.0) << lines[k];
+      EXPECT_GE(lines[k]["done"], lines[k > 0 ? k - 1 : 0]["done"]) << lines[k];
+    }
+    EXPECT_GT(lines.back()["percent"], 99.0) << lines.back();
+    const Outcome silent = run_program(command);
+    EXPECT_TRUE(objects_in(silent.output).empty()) << silent.output;
+  }
+  const std::vector<json> runs = objects_in(run_program(commands.at("runs") + " --json-lines").output);
+  EXPECT_EQ(runs.back()["done"], 90000) << "steps of both runs, which are processes";
+}
+
 TEST(Program, DrawsNothingForAShortRun) {
   const auto folder = fresh_folder();
-  EXPECT_EQ(said_on_terminal(ball, folder).find('['), std::string::npos);
+  EXPECT_EQ(said_on_terminal({"run", ball, "--out", folder.string()}).find('['), std::string::npos);
 }
 
 TEST(Program, ListsAndDescribesLaws) {

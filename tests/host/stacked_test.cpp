@@ -94,7 +94,7 @@ TEST(NonMatchingMeshes, ShareAreasBetweenBothSides) {
     const Scene scene = read_scene(source, "joint.json");
     source = scene.source;
     ASSERT_EQ(scene.interfaces.size(), 2U);
-    EXPECT_EQ(scene.interfaces[1]->name(), "joint, other side");
+    EXPECT_EQ(scene.interfaces[1]->name(), "joint_other_side");
     for (const auto& interface : scene.interfaces) {
       double area = 0.0;
       for (const double part : interface->setup().areas) area += part;

@@ -31,7 +31,7 @@ def boxes(chromium, tmp_path_factory):
     return open_page(chromium, TWO_BOXES, tmp_path_factory.mktemp("boxes"))
 
 
-PICTURE = "(ilawView.draw(), document.querySelector('#view canvas').toDataURL())"
+PICTURE = "(ilawView.draw(), document.querySelector('#stage canvas').toDataURL())"
 
 
 def test_loads_without_a_complaint_or_the_network(chromium, boxes):
@@ -47,6 +47,19 @@ def test_has_the_frames_and_bodies_of_the_run(chromium, boxes):
     assert chromium.evaluate("ilawView.model.obstacles.map(o => o.name)") == ["floor"]
     assert chromium.evaluate("document.getElementById('events').children.length") == len(boxes.run["events"])
     assert chromium.evaluate("document.querySelectorAll('aside canvas').length") == len(boxes.run["curves"])
+
+
+def test_legends_cover_no_body(chromium, boxes):
+    box = "(e => (b => [b.left, b.top, b.right, b.bottom])(document.getElementById(e).getBoundingClientRect()))"
+    stage, *legends = [chromium.evaluate(f"{box}('{name}')") for name in ("stage", "legend", "moment")]
+    for legend in legends:
+        assert legend[0] >= stage[2] or legend[1] >= stage[3], (stage, legend)
+    # All of the bodies and the floor below them are in the picture, at the start and at the end.
+    inside = """ilawView.show(FRAME), (a => { let most = 0; for (let i = 0; i < a.length; i += 3) {
+        const x = new THREE.Vector3(a[i], a[i + 1], a[i + 2]).project(ilawView.camera);
+        most = Math.max(most, Math.abs(x.x), Math.abs(x.y)); } return most; })(ilawView.model.place.array)"""
+    for frame in (0, boxes.frames - 1):
+        assert 0.2 < chromium.evaluate(inside.replace("FRAME", str(frame))) < 1.0
 
 
 def test_shows_every_frame_where_the_data_have_it(chromium, boxes):

@@ -1,11 +1,16 @@
 """The numbers in the page of `ilaw view`, against closed forms and against what the run wrote."""
 # SPDX-License-Identifier: BSD-3-Clause
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 from page import RESTING, TWO_BOXES, Page, box, history, points, run, view
 
 from ilaw._results import Run, read_grid
+
+SOURCE = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture(scope="module")
@@ -69,6 +74,30 @@ def test_pressure_over_the_face_is_the_force(boxes):
     areas = np.outer(share, share).ravel() * (0.05 / 3) ** 2
     force, rows = np.nan_to_num(page.field("pressure", "between")) @ areas, history(results)["between.F2"]
     assert np.abs(force[1:] - rows[: page.frames - 1]).max() < 0.05 * rows.max()
+
+
+def test_pressure_on_the_counterpart_is_the_force(boxes):
+    results, page = boxes
+    # Of the lower box's upper face: in one plane at the start, 4 x 4 equal facets.
+    nodes, x = page.array(page.film["modelNodes"]), page.array(page.film["points"]).reshape(-1, 3)
+    face = np.flatnonzero((nodes < 75) & (np.abs(x[:, 2] - 0.051) < 1e-6))
+    is_inside = (np.abs(x[face, :2] - 0.05) < 0.049).sum(axis=1)
+    areas = (0.1 / 4) ** 2 * np.array([0.25, 0.5, 1.0])[is_inside]
+    force = np.nan_to_num(page.field("pressure", "all interfaces")[:, face]) @ areas
+    rows = history(results)["between.F2"]
+    assert np.abs(force[1:] - rows[: page.frames - 1]).max() < 0.05 * rows.max()
+
+
+def test_pressure_is_the_same_on_both_sides_of_a_patch(tmp_path):
+    scene = json.loads((SOURCE / "host_mock/scenes/patch_test.json").read_text())
+    scene["output"]["fields"] = 10**9
+    results = run(scene, tmp_path)
+    assert view(results).returncode == 0
+    page = Page(results / "view.html")
+    x = page.array(page.film["points"]).reshape(-1, 3)
+    pressed = (np.abs(x[:, 2] - 0.5) < 1e-6) & (x[:, 0] < 1.1)
+    assert pressed.sum() == 16 + 36
+    assert page.field("pressure", "all interfaces")[-1, pressed] == pytest.approx(1000, rel=1e-3)
 
 
 def test_events_are_grouped_by_step(boxes):
@@ -200,14 +229,14 @@ def test_frames_are_left_out_before_nodes(boxes, tmp_path):
 
 
 def test_thinned_surface_keeps_its_shape():
-    from ilaw._film import Surface, edges_of, thinned, triangles_of
     from ilaw._results import Body
+    from ilaw._surfaces import Surface, edges_of, thinned
 
     n = 100
     x = np.array([[i, j, 0.0] for j in range(n + 1) for i in range(n + 1)])
     corner = np.array([i + j * (n + 1) for j in range(n) for i in range(n)])
     quads = np.stack([corner, corner + 1, corner + n + 2, corner + n + 1], axis=1)
-    surface = Surface(np.arange(len(x)), triangles_of([quads]), edges_of([quads]), np.zeros_like(x), False, quads[:, 0])
+    surface = Surface(np.arange(len(x)), [quads], edges_of([quads]), np.zeros_like(x))
     less = thinned(surface, x, [Body("plate", 0, len(x))], 0.1)
     assert 0.05 * len(x) < len(less.nodes) < 0.2 * len(x)
     a, b, c = x[less.nodes][less.triangles].transpose(1, 0, 2)

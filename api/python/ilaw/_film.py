@@ -5,11 +5,12 @@ from __future__ import annotations
 import base64
 import zlib
 from pathlib import Path
-from typing import Any, Iterable, NamedTuple, Optional
+from typing import Any, Optional
 
 import numpy as np
 
-from ._results import Body, Grid, Run, read_grid
+from ._results import Grid, Run, read_grid
+from ._surfaces import PushedFacets, Surface, surface_of, thinned
 
 LEAST_FRAMES = 20  # fewer than these look like single pictures: then nodes are left out instead
 NO_VALUE = 65535
@@ -65,87 +66,6 @@ class Channel:
     def finish(self, blocks: Blocks) -> dict[str, Any]:
         low, step = (blocks.add(np.array(values), "<f8") for values in (self.low, self.step))
         return {**blocks.add_packed(self.bytes + self.packer.flush(), "<u2"), "low": low, "step": step}
-
-
-class Surface(NamedTuple):
-    """Facets that are drawn, over nodes that are drawn; nodes are numbers of the model."""
-
-    nodes: np.ndarray
-    triangles: np.ndarray
-    edges: np.ndarray
-    offset: np.ndarray  # of the drawn node from the model's: bars have a height
-    is_points: bool
-    facets: np.ndarray  # a node of each
-
-
-def edges_of(polygons: Iterable[np.ndarray]) -> np.ndarray:
-    pairs = [np.stack([p, np.roll(p, -1, axis=1)], axis=-1).reshape(-1, 2) for p in polygons if len(p)]
-    return np.unique(np.sort(np.concatenate(pairs), axis=1), axis=0) if pairs else np.empty((0, 2), int)
-
-
-def triangles_of(polygons: Iterable[np.ndarray]) -> np.ndarray:
-    parts = [p[:, [0, k, k + 1]] for p in polygons for k in range(1, p.shape[1] - 1)]
-    return np.concatenate(parts) if parts else np.empty((0, 3), int)
-
-
-def compact(polygons: list[np.ndarray]) -> tuple[np.ndarray, list[np.ndarray]]:
-    """The nodes that polygons use, and the polygons over them."""
-    nodes = np.unique(np.concatenate([p.ravel() for p in polygons]))
-    return nodes, [np.searchsorted(nodes, p) for p in polygons]
-
-
-def surface_of(grid: Grid) -> Surface:
-    """The boundary of the elements; lines become ribbons, and nodes alone stay points."""
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
-
-    kinds = set(np.unique(vtk_to_numpy(grid.data.GetCellTypesArray())).tolist())
-    if kinds <= {1}:
-        nodes = np.arange(len(grid.points))
-        return Surface(nodes, np.empty((0, 3), int), np.empty((0, 2), int), np.zeros((len(nodes), 3)), True, nodes[:0])
-    if kinds == {3}:
-        return ribbons(grid.points, vtk_to_numpy(grid.data.GetCells().GetConnectivityArray()).reshape(-1, 2))
-    extractor = vtkDataSetSurfaceFilter()
-    extractor.SetInputData(grid.data)
-    extractor.PassThroughPointIdsOn()
-    extractor.Update()
-    found = extractor.GetOutput()
-    ids = vtk_to_numpy(found.GetPointData().GetArray("vtkOriginalPointIds"))
-    starts = vtk_to_numpy(found.GetPolys().GetOffsetsArray())
-    corners = vtk_to_numpy(found.GetPolys().GetConnectivityArray())
-    sizes = np.diff(starts)
-    polygons = [ids[corners[starts[:-1][sizes == n][:, None] + np.arange(n)]] for n in (3, 4)]
-    nodes, polygons = compact(polygons)
-    facets = np.concatenate([p[:, 0] for p in polygons])
-    return Surface(nodes, triangles_of(polygons), edges_of(polygons), np.zeros((len(nodes), 3)), False, facets)
-
-
-def ribbons(points: np.ndarray, lines: np.ndarray) -> Surface:
-    count, height = len(points), 0.04 * float(np.ptp(points[:, 0]) or 1.0)
-    quads = np.stack([lines[:, 0], lines[:, 1], lines[:, 1] + count, lines[:, 0] + count], axis=1)
-    offset = np.zeros((2 * count, 3))
-    offset[:count, 1], offset[count:, 1] = -height, height
-    nodes = np.concatenate([np.arange(count)] * 2)
-    return Surface(nodes, triangles_of([quads]), edges_of([quads]), offset, False, quads[:, 0])
-
-
-def thinned(surface: Surface, points: np.ndarray, bodies: list[Body], share: float) -> Surface:
-    """Nodes in the same cell of a raster become one; about this share of the nodes remains."""
-    x = points[surface.nodes]
-    body = np.searchsorted([b.first for b in bodies], surface.nodes, side="right")
-    # A surface has (length of its edges)^-2 nodes per area.
-    a = x[surface.edges] if len(surface.edges) else np.zeros((1, 2, 3))
-    edge = float(np.median(np.linalg.norm(a[:, 0] - a[:, 1], axis=1)))
-    size = (edge or float(np.ptp(x, axis=0).max()) / len(x) ** 0.5 or 1.0) / share**0.5
-    cells = np.column_stack([body, np.floor((x - x.min(axis=0)) / size).astype(np.int64)])
-    _, kept, member = np.unique(cells, axis=0, return_index=True, return_inverse=True)
-    triangles = member.reshape(-1)[surface.triangles]
-    a, b, c = triangles.T
-    triangles = triangles[(a != b) & (b != c) & (c != a)]
-    _, first = np.unique(np.sort(triangles, axis=1), axis=0, return_index=True)
-    triangles = triangles[np.sort(first)]
-    edges = np.empty((0, 2), int)
-    return Surface(surface.nodes[kept], triangles, edges, surface.offset[kept], surface.is_points, triangles[:, 0])
 
 
 class InterfaceFields:
@@ -265,17 +185,24 @@ def forces_entry(run: Run, blocks: Blocks, drawn: np.ndarray, frames: np.ndarray
 class Film:
     """Frames of all fields, added one by one."""
 
-    def __init__(self, run: Run, first: Grid, surface: Surface, times: list[float]) -> None:
+    def __init__(self, run: Run, first: Grid, whole: Surface, surface: Surface, times: list[float]) -> None:
+        """whole: the surface before nodes of it were left out."""
         self.run, self.surface, self.times = run, surface, times
         self.obstacles = {o["interface"]: o for o in run.obstacles(np.array(times))}
         self.u, self.fields, self.forces = Channel(), {}, Channel()
-        self.interfaces = [InterfaceFields(run, first, k, surface) for k in range(len(run.interfaces))]
+        self.interfaces = [InterfaceFields(run, first, k, whole) for k in range(len(run.interfaces))]
         of_interfaces = np.unique(np.concatenate([[], *(i.nodes for i in self.interfaces)]).astype(int))
         self.drawn = np.full(len(first.points), -1)
         self.drawn[surface.nodes[::-1]] = np.arange(len(surface.nodes))[::-1]
         counterparts = any("obstacle" not in i for i in run.interfaces)  # these also push on other nodes
+        has_faces = counterparts and run.dimension == 3 and whole.polygons
+        self.facets = PushedFacets(first.points, whole) if has_faces else None
         self.pushed = surface.nodes if counterparts else of_interfaces[self.drawn[of_interfaces] >= 0]
         self.pushed = np.unique(self.pushed)
+        self.is_both_sided = np.zeros(len(first.points), bool)  # nodes that push, and are pushed by those they meet
+        for fields in self.interfaces:
+            of_surface = "against" in fields.interface
+            self.is_both_sided[fields.nodes] |= of_surface and fields.interface.get("area_factor", 1) != 1
         self.force_frames: list[np.ndarray] = []
 
     def add_field(self, name: str, nodes: Optional[np.ndarray], values: np.ndarray, interface: str = "") -> None:
@@ -297,14 +224,19 @@ class Film:
             self.add_field("temperature", None, grid.nodes["temperature"])
         self.force_frames.append((grid.nodes["r"][self.pushed] / self.run.summary["dt"]).astype(np.float32))
         together: dict[str, np.ndarray] = {}
+        several = len(self.interfaces) > 1 or self.facets is not None
         for fields in self.interfaces:
             name = fields.interface["name"]
             obstacle, speed = self.obstacles.get(name), self.speed_of(name, frame)
             for key, values in fields.values(grid, obstacle, frame, speed).items():
                 self.add_field(key, fields.nodes, values, name)
-                if len(self.interfaces) > 1 and key in ("pressure", "status"):
+                if several and key in ("pressure", "status"):
                     whole = together.setdefault(key, np.full(len(grid.points), np.nan))
                     whole[fields.nodes] = np.fmax(whole[fields.nodes], values)
+        if self.facets:
+            on_both = self.facets.pressure(grid.points + grid.nodes["u"], grid.nodes["r"] / self.run.summary["dt"])
+            own = together["pressure"]
+            own[:] = np.where(np.isnan(own) | self.is_both_sided, on_both, own)
         for key, whole in together.items():
             self.add_field(key, None, whole, "all interfaces")
 
@@ -367,23 +299,24 @@ def film_of_fields(run: Run, blocks: Blocks, megabytes: float, notes: list[str])
 
     def film(chosen: list[int], with_surface: Surface) -> Film:
         times = [files[k][0] for k in chosen]
-        made = Film(run, first, with_surface, times)
+        made = Film(run, first, surface, with_surface, times)
         for frame, k in enumerate(chosen):
             made.add(read_grid(files[k][1]), frame)
         return made
 
+    drawn = surface
     allowed = megabytes * 1e6 * 3 / 4  # base64 writes 3 bytes as 4 letters
     if len(surface.nodes) * len(files) * 20 > allowed:
         per_frame = max(film([k], surface).size() for k in (len(files) // 2, len(files) - 1)) or 1
         chosen = frames_to_show(len(files), max(LEAST_FRAMES, int(allowed / per_frame)))
         if per_frame * len(chosen) > allowed and len(surface.nodes) > 1000:
             share = allowed / (per_frame * len(chosen))
-            before = len(surface.nodes)
-            surface = thinned(surface, first.points, run.bodies(), share)
-            notes.append(f"{len(surface.nodes)} of {before} surface nodes are drawn: a larger --megabytes draws more.")
+            drawn = thinned(surface, first.points, run.bodies(), share)
+            left = f"{len(drawn.nodes)} of {len(surface.nodes)} surface nodes are drawn"
+            notes.append(f"{left}: a larger --megabytes draws more.")
         if len(chosen) < len(files):
             notes.append(f"{len(chosen)} of {len(files)} frames are shown: a larger --megabytes shows more.")
     else:
         chosen = list(range(len(files)))
-    made = film(chosen, surface)
+    made = film(chosen, drawn)
     return made.finish(blocks, first.points), made.times

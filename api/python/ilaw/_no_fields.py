@@ -6,8 +6,9 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ._film import Blocks, Channel, edges_of, field_entry, forces_entry, frames_to_show, triangles_of
+from ._film import Blocks, Channel, field_entry, forces_entry, frames_to_show
 from ._results import Run
+from ._surfaces import edges_of, triangles_of
 
 MOST_FRAMES = 300
 QUADS = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])

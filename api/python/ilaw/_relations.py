@@ -205,8 +205,9 @@ def pressure_along_a_line(run: Run) -> Iterator[Panel]:
     files = run.field_files()
     if not files:
         return
-    from ._film import InterfaceFields, surface_of
+    from ._film import InterfaceFields
     from ._results import read_grid
+    from ._surfaces import surface_of
 
     first = read_grid(files[0][1])
     surface = surface_of(first)

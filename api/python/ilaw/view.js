@@ -95,7 +95,7 @@ const flat = run.dimension < 3;
 const state = { position: 0, playing: false, scale: 1, field: null, low: 0, high: 1, shown: 0 };
 const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true, alpha: true });
 renderer.setPixelRatio(window.devicePixelRatio);
-const view = $("view");
+const view = $("stage");
 view.appendChild(renderer.domElement);
 const scene = new THREE.Scene();
 const camera = flat ? new THREE.OrthographicCamera(-1, 1, 1, -1, -1e6, 1e6) : new THREE.PerspectiveCamera(28, 1, 0.1, 1000);
@@ -108,8 +108,6 @@ const headlight = new THREE.DirectionalLight(0xffffff, 0.42);
 camera.add(headlight);
 headlight.position.set(0.4, 0.6, 1);
 scene.add(camera, new THREE.AmbientLight(0xffffff, 0.66));
-const overlay = { parts: make("div", view, undefined, "over"), bar: make("div", view, undefined, "over"), moment: make("div", view, undefined, "over") };
-for (const id in overlay) overlay[id].id = id;
 
 const model = { bodies: [], obstacles: [], size: 1, center: new THREE.Vector3() };
 let dirty = true;
@@ -252,8 +250,9 @@ function moveForces() {
   const to = new THREE.Vector3(), place = new THREE.Vector3(), up = new THREE.Vector3(0, 1, 0), turn = new THREE.Quaternion();
   const size = new THREE.Vector3(), matrix = new THREE.Matrix4();
   const slender = Math.min(1, Math.sqrt(150 / force.part.count)) * 0.5 + 0.5;
+  const every = Math.ceil(force.part.count / 600); // more of them would hide the bodies
   let shown = 0;
-  for (let k = 0; k < force.part.count; ++k) {
+  for (let k = 0; k < force.part.count; k += every) {
     to.fromArray(force.now, 3 * k);
     const f = to.length(), length = Math.min(f * unit, model.viewSize);
     if (!(f > 1e-3 * force.part.typical)) continue;
@@ -419,7 +418,7 @@ function paint() {
 }
 
 function drawBar() {
-  const bar = overlay.bar, field = state.field;
+  const bar = $("bar"), field = state.field;
   bar.replaceChildren();
   bar.style.display = field ? "" : "none";
   if (!field) return;
@@ -545,9 +544,21 @@ function fit() {
     Object.assign(camera, { left: -half * aspect, right: half * aspect, top: half, bottom: -half, zoom: 1 });
     camera.position.copy(controls.target).setZ(10 * wide);
   } else {
-    const distance = 0.6 * wide / Math.tan(camera.fov * Math.PI / 360) / Math.min(1, aspect);
-    Object.assign(camera, { near: distance / 100, far: distance * 30 });
-    camera.position.copy(controls.target).addScaledVector(new THREE.Vector3(...VIEWS[$("from").value]).normalize(), distance);
+    const toward = new THREE.Vector3(...VIEWS[$("from").value]).normalize(), corner = new THREE.Vector3();
+    let distance = 0.6 * wide / Math.tan(camera.fov * Math.PI / 360) / Math.min(1, aspect);
+    Object.assign(camera, { near: distance / 100, far: distance * 30, aspect });
+    camera.updateProjectionMatrix();
+    for (let round = 0; round < 4; ++round) { // until the corners of the box reach 0.86 of the picture
+      camera.position.copy(controls.target).addScaledVector(toward, distance);
+      camera.lookAt(controls.target), camera.updateMatrixWorld();
+      let most = 0;
+      for (let k = 0; k < 8; ++k) {
+        corner.set(...["x", "y", "z"].map((axis, c) => (k >> c & 1 ? box.min : box.max)[axis])).project(camera);
+        most = Math.max(most, Math.abs(corner.x), Math.abs(corner.y));
+      }
+      distance *= most / 0.86;
+    }
+    camera.position.copy(controls.target).addScaledVector(toward, distance);
   }
   camera.updateProjectionMatrix();
   controls.update();
@@ -701,15 +712,16 @@ function toggle(parent, color, text, onChange) {
   box.onchange = () => { onChange(box.checked), dirty = true; };
 }
 
-function fillOverlays() {
+function fillLegend() {
+  const parts = $("parts"), moment = $("moment");
   model.bodies.slice(0, 40).forEach((body, k) => {
     const facets = body.facets ? `, ${body.facets} facets` : body.dots ? `, ${body.nodes.length}` : "";
-    toggle(overlay.parts, BODY_COLORS[k % BODY_COLORS.length], body.name + facets, on => { body.group.visible = on; });
+    toggle(parts, BODY_COLORS[k % BODY_COLORS.length], body.name + facets, on => { body.group.visible = on; });
   });
-  if (model.bodies.length > 40) make("div", overlay.parts, `and ${model.bodies.length - 40} more bodies`);
-  if (model.others) toggle(overlay.parts, "#c9d0d8", "not watched, at the start", on => { model.others.visible = on; });
-  model.obstacles.forEach(obstacle => toggle(overlay.parts, "#aeb8c2", `${obstacle.name} (${obstacle.given.type})`, on => { obstacle.shape.visible = on; }));
-  const axes = make("canvas", overlay.moment), text = make("div", overlay.moment);
+  if (model.bodies.length > 40) make("div", parts, `and ${model.bodies.length - 40} more bodies`);
+  if (model.others) toggle(parts, "#c9d0d8", "not watched, at the start", on => { model.others.visible = on; });
+  model.obstacles.forEach(obstacle => toggle(parts, "#aeb8c2", `${obstacle.name} (${obstacle.given.type})`, on => { obstacle.shape.visible = on; }));
+  const axes = make("canvas", moment), text = make("div", moment);
   axes.id = "axes", axes.width = axes.height = 128;
   make("div", text).id = "told";
   make("span", text).id = "length";
@@ -768,7 +780,10 @@ function connect() {
 }
 
 async function begin() {
-  $("laws").textContent = run.interfaces.map(i => `${i.name}: ${i.law}`).join(" · ") + ` · ${run.steps} steps of ${number(run.dt)} ${run.timeUnit}`;
+  const names = {};
+  for (const { name, law } of run.interfaces) (names[law] = names[law] || []).push(name);
+  const told = Object.entries(names).map(([law, of]) => `${of.length > 4 ? of.length + " interfaces" : of.join(", ")}: ${law}`);
+  $("laws").textContent = told.join(" · ") + ` · ${run.steps} steps of ${number(run.dt)} ${run.timeUnit}`;
   const side = $("side");
   for (const note of run.notes) make("div", side, note, "note");
   if (run.film) await addBodies(run.film);
@@ -776,7 +791,7 @@ async function begin() {
   addEvents(side);
   for (const given of run.curves)
     panels.push(new Panel(given, await open(given.time), await Promise.all(given.curves.map(curve => open(curve.values))), side));
-  fillOverlays();
+  fillLegend();
   connect();
   resize();
   fit();
@@ -787,7 +802,7 @@ async function begin() {
 }
 
 // For tests, and for pictures that a script takes.
-window.ilawView = { run, state, model, show, play, chooseField, draw, ready: begin().catch(reason => {
+window.ilawView = { run, state, model, camera, resize, fit, show, play, chooseField, draw, ready: begin().catch(reason => {
   make("div", view, `This page cannot be drawn: ${reason.message}. It needs WebGL and a browser of 2023 or later.`, "over").style.cssText = "top: 40%; left: 20%";
   throw reason;
 }) };

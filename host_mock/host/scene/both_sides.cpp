@@ -26,7 +26,8 @@ void expand_both_sides(nlohmann::json& scene) {
       throw SceneError(pointer + "/nodes", "found a list, expected a surface, which its other side meets");
     interfaces[i]["area_factor"] = 0.5 * interfaces[i].value("area_factor", 1.0);
     nlohmann::json other = interfaces[i];
-    other["name"] = interfaces[i].value("name", "interface" + std::to_string(i)) + ", other side";
+    other["name"] = interfaces[i].value("name", "interface" + std::to_string(i)) +
+                    "_other_side";  // a comma would be a column
     other["nodes"] = against["surface"];
     other["against"]["surface"] = interfaces[i]["nodes"];
     interfaces.push_back(std::move(other));

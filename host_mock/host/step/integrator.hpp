@@ -13,6 +13,7 @@
 #include "step/prestress.hpp"
 #include "step/temperatures.hpp"
 
+#include <functional>
 #include <iosfwd>
 #include <optional>
 #include <stdexcept>
@@ -44,8 +45,8 @@ class Integrator {
 
   // The half step that a run starts with, from V_0 to V_{1/2}, as interfaces let it: what rests or is bonded
   // carries its load from time 0 on. The first step does it where nobody has; later calls do nothing. Throws
-  // as step().
-  void start();
+  // as step(). told: of each step of the search for an equilibrium.
+  void start(const std::function<void(const PrestressReport&)>& told = {});
   // One step. Throws ilaw::error when a law refuses a node, Diverged when the motion is not finite.
   void step();
   // Throws Diverged where the kinetic energy is far above what was put in. Each step does it, with more room.
@@ -104,7 +105,7 @@ class Integrator {
   Dofs force_at_start() const;
   StepTimes start_times() const { return {-0.5 * dt_, 0.0, dt_}; }
   void add_start_kick();
-  void settle();
+  void settle(const std::function<void(const PrestressReport&)>& told);
   void relax(StepTimes times, bool from_rest);
   double residual();
   void stop();

@@ -60,7 +60,7 @@ void Integrator::relax(StepTimes times, bool from_rest) {
   has_begun_step_ = false;
 }
 
-void Integrator::settle() {
+void Integrator::settle(const std::function<void(const PrestressReport&)>& told) {
   const auto ramp_steps = static_cast<std::int64_t>(std::ceil(prestress_->ramp / dt_ * (1.0 - 1e-12)));
   const auto time_at = [&](std::int64_t number) {
     return -dt_ * static_cast<double>(std::max<std::int64_t>(ramp_steps - number, 0));
@@ -74,6 +74,7 @@ void Integrator::settle() {
     if (stop_requested()) throw Interrupted("the prestress was interrupted");
     relax({time - dt_, time, time_at(number + 1)}, at_rest);
     found.steps = number + 1;
+    if (told) told(found);
     if (number < ramp_steps) {
       at_rest = false;
       continue;

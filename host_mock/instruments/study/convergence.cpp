@@ -6,7 +6,6 @@
 #include "scene/json_text.hpp"
 #include "study/process_run.hpp"
 
-#include <cstdio>
 #include <ostream>
 
 namespace ilaw::host {
@@ -70,15 +69,19 @@ void check_sweep(const json& source, const Sweep& sweep, const std::filesystem::
   exact_solution(scene_at(source, sweep, 0, file));
 }
 
-ErrorTable run_levels(const json& source, const Sweep& sweep, const std::filesystem::path& file) {
+ErrorTable run_levels(const json& source, const Sweep& sweep, const std::filesystem::path& file,
+                      const Told& told) {
   ErrorTable table;
+  double done = 0.0, total = 0.0;  // steps per level grow with the refinement
   table.exact = !exact_solution(scene_at(source, sweep, 0, file)).empty();
   for (int level = 0; level < sweep.levels; ++level) {
     const auto scene = [&] { return scene_at(source, sweep, level, file); };
     const Trace& run = table.runs.emplace_back(trace_in_process(scene, sweep.threads));
     if (table.exact) table.errors.push_back(errors_against(exact_solution(scene()), run));
-    std::fprintf(stderr, "level %d of %d: %lld steps of %g in %.2g s\n", level + 1, sweep.levels,
-                 static_cast<long long>(run.steps), run.dt, run.seconds);
+    const auto steps = static_cast<double>(run.steps);
+    if (level == 0)
+      for (int k = 0; k < sweep.levels; ++k) total += steps * sweep.refinement(k) / sweep.refinement(0);
+    told(done += steps, total);
   }
   for (std::size_t k = 0; !table.exact && k + 1 < table.runs.size(); ++k)
     table.errors.push_back(errors_against(table.runs.back(), table.runs[k]));

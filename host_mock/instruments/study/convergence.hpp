@@ -25,8 +25,9 @@ struct ErrorTable {
 // Throws SceneError where the sweep makes no sense of the scene, before anything is run.
 void check_sweep(const nlohmann::json& source, const Sweep& sweep, const std::filesystem::path& file);
 
-// Runs all levels; says on stderr how far it is.
-ErrorTable run_levels(const nlohmann::json& source, const Sweep& sweep, const std::filesystem::path& file);
+// Runs all levels, and tells of steps.
+ErrorTable run_levels(const nlohmann::json& source, const Sweep& sweep, const std::filesystem::path& file,
+                      const Told& told);
 
 // converge.csv with the errors, converge.json with their orders.
 void write_convergence(const ErrorTable& table, const Sweep& sweep, const std::string& title,

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <functional>
 #include <string>
 
 namespace ilaw::host {
@@ -19,6 +20,9 @@ struct Sweep {
   // How many times smaller than the scene's.
   double refinement(int level) const { return std::pow(factor, level) / first; }
 };
+
+// Is told how much work is done, and an estimate of all.
+using Told = std::function<void(double done, double total)>;
 
 // The keys of "converge" or "study" in a scene.
 Sweep read_sweep(const nlohmann::json& given);

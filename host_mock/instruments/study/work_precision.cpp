@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 #include <stdexcept>
 
@@ -74,8 +73,9 @@ void attempt(MeasuredRun& measured, Run run) {
 
 class Measurement {
  public:
-  Measurement(const json& source, const StudySetup& setup, const std::filesystem::path& file)
-      : setup_(setup), scenes_(source, setup.sweep, file) {}
+  Measurement(const json& source, const StudySetup& setup, const std::filesystem::path& file,
+              const Told& told)
+      : setup_(setup), scenes_(source, setup.sweep, file), told_(told), total_(all_work()) {}
 
   Study run() {
     for (const json& entry : setup_.laws) find_steps(entry);
@@ -88,15 +88,29 @@ class Measurement {
         runs.push_back({run.dt});
         runs.back().steps = run.steps;
         measure(k, level, runs.back());
+        did(weight(level));
       }
-      std::fprintf(stderr, "%s: %zu runs\n", study_.laws[k].name.c_str(), runs.size());
     }
     find_times();
+    told_(total_, total_);
     return std::move(study_);
   }
 
  private:
   double refinement(int level) const { return setup_.sweep.refinement(level); }
+
+  // Work is told in runs of level 0. The search for the largest stable step has about search_runs of them.
+  static constexpr double search_runs = 12.0;
+  double weight(int level) const { return refinement(level) / refinement(0); }
+  double reference_work() const { return setup_.reference * weight(setup_.sweep.levels - 1); }
+  double all_work() const {
+    double of_law = search_runs;
+    for (int level = 0; level < setup_.sweep.levels; ++level)
+      of_law += weight(level) * (1.0 + setup_.repetitions);
+    return reference_work() + static_cast<double>(setup_.laws.size()) * of_law;
+  }
+  void did(double work) { told_(done_ += work, total_); }
+
   bool has_run(std::size_t law, int level) const {
     return static_cast<std::size_t>(level) < study_.laws[law].runs.size();
   }
@@ -118,16 +132,16 @@ class Measurement {
                                      setup_.sweep.threads);
     if (law.stable == 0.0) throw SceneError("law '" + law.name + "' has no stable step in this scene");
     parts_.push_back(std::min(margin * law.stable / step, 1.0));
-    std::fprintf(stderr, "%s: stable up to a step of %.3g\n", law.name.c_str(), law.stable);
     study_.laws.push_back(std::move(law));
+    did(search_runs);
   }
 
   void find_reference() {
     study_.exact = !exact_solution(scenes_.own(refinement(0))).empty();
+    did(reference_work());
     if (study_.exact) return;
     const double finest = refinement(setup_.sweep.levels - 1) * setup_.reference;
     reference_ = trace_in_process([&] { return scene(0, finest); }, setup_.sweep.threads);
-    std::fprintf(stderr, "reference: %lld steps\n", static_cast<long long>(reference_.steps));
   }
 
   void measure(std::size_t law, int level, MeasuredRun& measured) const {
@@ -149,15 +163,17 @@ class Measurement {
           if (!has_run(k, level) || !run_of(k, level).failure.empty()) continue;
           seconds[k].push_back(
               seconds_in_process([&] { return scene(k, refinement(level)); }, setup_.sweep.threads));
+          did(weight(level));
         }
       for (std::size_t k = 0; k < study_.laws.size(); ++k)
         if (!seconds[k].empty()) run_of(k, level).seconds = median(seconds[k]);
-      std::fprintf(stderr, "times of level %d of %d\n", level + 1, setup_.sweep.levels);
     }
   }
 
   const StudySetup& setup_;
   Scenes scenes_;
+  const Told& told_;
+  double done_ = 0.0, total_;
   std::vector<double> parts_{};  // per law: step over that of the scene
   Trace reference_{};
   Study study_{};
@@ -193,8 +209,9 @@ void check_study(const json& source, const StudySetup& setup, const std::filesys
   }
 }
 
-Study run_study(const json& source, const StudySetup& setup, const std::filesystem::path& file) {
-  return Measurement(source, setup, file).run();
+Study run_study(const json& source, const StudySetup& setup, const std::filesystem::path& file,
+                const Told& told) {
+  return Measurement(source, setup, file, told).run();
 }
 
 Cost cost_of(const std::vector<MeasuredRun>& runs, Norm norm, double error) {

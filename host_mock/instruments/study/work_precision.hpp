@@ -51,8 +51,10 @@ struct Study {
 // Throws SceneError where the study makes no sense of the scene, before anything is run.
 void check_study(const nlohmann::json& source, const StudySetup& setup, const std::filesystem::path& file);
 
-// Runs everything; says on stderr how far it is. Throws SceneError where a law has no stable step.
-Study run_study(const nlohmann::json& source, const StudySetup& setup, const std::filesystem::path& file);
+// Runs everything, and tells of runs, each weighed by its refinement. Throws SceneError where a law has no
+// stable step.
+Study run_study(const nlohmann::json& source, const StudySetup& setup, const std::filesystem::path& file,
+                const Told& told);
 
 // The cost of a law to come below an error and stay there with all smaller steps: between runs along
 // straight lines in logarithms; NaN where it never does. Instants are relative to the end of the run.
