@@ -221,6 +221,37 @@ bool Finder::is_apart(const Box& points, double horizon, Apart& least) const {
   return true;
 }
 
+// ---- faces ----------------------------------------------------------------------------------------------
+
+std::int64_t Finder::find_overlaps(const std::int32_t* points, std::uint32_t corner_count, double distance,
+                                   std::int32_t* facets, std::int64_t capacity) const {
+  Box face;
+  for (std::uint32_t k = 0; k < corner_count; ++k) face.add(seen_[static_cast<std::size_t>(points[k])]);
+  const double enough = square(distance + doubt());
+  const Tree& tree = surface_.tree();
+  std::array<std::int32_t, Tree::most_depth> stack;
+  std::size_t depth = 0;
+  stack[depth++] = 0;
+  std::int64_t found = 0;
+  while (depth > 0) {
+    const auto n = static_cast<std::size_t>(stack[--depth]);
+    if (least_square(face, surface_.box(n)) > enough) continue;
+    const Tree::Node& node = tree[n];
+    if (node.right != 0) {
+      stack[depth++] = node.right;
+      stack[depth++] = static_cast<std::int32_t>(n) + 1;
+      continue;
+    }
+    for (std::int32_t k = node.first; k < node.end; ++k) {
+      if (least_square(face, surface_.facet_box(tree.item(k))) > enough) continue;
+      if (found < capacity) facets[found] = tree.item(k);
+      ++found;
+    }
+  }
+  std::sort(facets, facets + std::min(found, capacity));
+  return found;
+}
+
 // ---- the closest facet ----------------------------------------------------------------------------------
 
 // Collects the facets with the least bounds.

@@ -32,6 +32,9 @@ class Finder {
   void find_near(ilaw_facets_nearby& nearby);
   // Adds to looked_at the facets that were looked at.
   const Pair& pair_of(std::size_t point, std::int64_t& looked_at);
+  // Facets that come close to the face with these corners, and their number; up to `capacity` are written.
+  std::int64_t find_overlaps(const std::int32_t* points, std::uint32_t corner_count, double distance,
+                             std::int32_t* facets, std::int64_t capacity) const;
   // How far the rounding of coordinates may put a point beside the facet that it is over.
   double rounding_rim() const;
 

@@ -122,6 +122,28 @@ ilaw_result ILAW_CALL ilaw_facets_pairs(ilaw_facets* search, const ilaw_facets_p
   return ILAW_OK;
 }
 
+ilaw_result ILAW_CALL ilaw_facets_overlaps(const ilaw_facets* search,
+                                           const ilaw_facets_overlaps_of* overlaps) {
+  if (!search || !sized::is_complete(overlaps)) return ILAW_INVALID_ARGUMENT;
+  const ilaw_facets_overlaps_of asked = sized::read(overlaps);
+  const auto points = static_cast<int64_t>(search->finder.point_count());
+  const bool is_right = asked.count >= 0 && asked.capacity >= 0 && asked.distance >= 0.0 && asked.first &&
+                        asked.corner_count > 0 && (asked.points || asked.count == 0) &&
+                        (asked.facets || asked.capacity == 0);
+  if (!is_right) return ILAW_INVALID_ARGUMENT;
+  for (int64_t k = 0; k < asked.count * asked.corner_count; ++k)
+    if (asked.points[k] < 0 || asked.points[k] >= points) return ILAW_INVALID_ARGUMENT;
+  int64_t end = 0;
+  for (int64_t i = 0; i < asked.count; ++i) {
+    asked.first[i] = end;
+    const int64_t left = asked.capacity > end ? asked.capacity - end : 0;
+    end += search->finder.find_overlaps(asked.points + i * asked.corner_count, asked.corner_count,
+                                        asked.distance, left > 0 ? asked.facets + end : asked.facets, left);
+  }
+  asked.first[asked.count] = end;
+  return ILAW_OK;
+}
+
 ilaw_result ILAW_CALL ilaw_facets_count(const ilaw_facets* search, ilaw_facets_counts* counts) {
   if (!search || !sized::cleared(counts)) return ILAW_INVALID_ARGUMENT;
   ilaw_facets_counts known{};

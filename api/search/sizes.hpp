@@ -16,6 +16,8 @@ inline constexpr std::uint32_t least<ilaw_facets_nearby> = ILAW_FACETS_NEARBY_SI
 template <>
 inline constexpr std::uint32_t least<ilaw_facets_pairs_of> = ILAW_FACETS_PAIRS_OF_SIZE_1_0;
 template <>
+inline constexpr std::uint32_t least<ilaw_facets_overlaps_of> = ILAW_FACETS_OVERLAPS_OF_SIZE_1_0;
+template <>
 inline constexpr std::uint32_t least<ilaw_facets_counts> = ILAW_FACETS_COUNTS_SIZE_1_0;
 
 }  // namespace ilaw::sized

@@ -21,7 +21,7 @@ import numpy
 
 PRESSURE, YOUNG, DENSITY, HEIGHT, FRICTION = 1e3, 1e6, 1e3, 0.5, 0.3
 INNER, MIDDLE, OUTER, WIDTH = 0.5, 1.0, 1.5, 1.0  # radii of two rings, and their width
-SIDES = ("fine", "coarse", "both")
+SIDES = ("fine", "coarse", "both", "dual fine", "dual coarse")  # whose nodes are secondary
 FACES = {"blocks": {"a": "z_max", "b": "z_min"}, "rings": {"a": "outside", "b": "inside"}}
 
 
@@ -69,8 +69,12 @@ def ring(name, folder, radii, elements):
 
 
 def interface(side, faces, law, parameters):
-    nodes, surface = (f"{body}.{faces[body]}" for body in ("ab" if side == "coarse" else "ba"))
-    against = {"surface": surface, "both_sides": True} if side == "both" else {"surface": surface}
+    nodes, surface = (f"{body}.{faces[body]}" for body in ("ab" if side.endswith("coarse") else "ba"))
+    against = {"surface": surface}
+    if side == "both":
+        against["both_sides"] = True
+    if side.startswith("dual"):
+        against["discretization"] = "dual_mortar"
     return {"name": "joint", "law": law, "parameters": parameters, "nodes": nodes, "against": against}
 
 
@@ -167,6 +171,7 @@ def main():
     parser.add_argument("ilaw")
     parser.add_argument("--meshes", nargs="+", default=["3:5", "6:10", "12:20"])
     parser.add_argument("--cases", nargs="+", default=["impact", "at rest", "sliding", "ring, wave", "ring, at rest"])
+    parser.add_argument("--sides", nargs="+", default=SIDES, choices=SIDES)
     parser.add_argument("--keep-gaps", action="store_true", help="of the facets of rings, at the start")
     parser.add_argument("--penalty", type=float, help="implicit springs of this stiffness per node instead of contact")
     parser.add_argument("--append", type=Path, help="a table of docs/results to which the rows are added")

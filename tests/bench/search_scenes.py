@@ -2,6 +2,7 @@
 """What the search of two plates costs a step, beside the internal forces of the plates (docs/theory/non_matching_meshes.md).
 
     tests/bench/search_scenes.py build/release/bin/ilaw [--sizes 20 40 80 120] [--steps 100] [--cases apart passing ...]
+        [--discretization dual_mortar]
 
 Two plates of n x n x 1 elements with edges of 1: 0.4 edges apart and at rest (apart), moving past each other (passing),
 pressed on each other (resting), and sliding while pressed (sliding). Meshes are moved against each other by 0.3 edges,
@@ -20,7 +21,7 @@ SPEED = 0.05  # of sound waves
 CASES = ("apart", "passing", "resting", "resting matched", "sliding")
 
 
-def scene(case, n, steps):
+def scene(case, n, steps, discretization):
     material = {"type": "linear", "young": 1.0, "poisson": 0.0, "density": 1.0}  # waves of speed 1
     pressed = case.startswith("resting") or case == "sliding"
     aside = 0.0 if case == "resting matched" else 0.3
@@ -34,13 +35,13 @@ def scene(case, n, steps):
     return {"model": {"type": "blocks", "blocks": [lower, upper]}, "time": {"cfl": 0.9, "end": 0.45 * steps},
             "loads": loads, "output": {"every": 1000000},
             "interfaces": [{"name": "joint", "law": "coulomb", "parameters": {"friction": 0.2}, "nodes": "upper.z_min",
-                            "against": {"surface": "lower.z_max"}}]}  # fmt: skip
+                            "against": {"surface": "lower.z_max", "discretization": discretization}}]}  # fmt: skip
 
 
-def run(program, case, n, steps):
+def run(program, case, n, steps, discretization):
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "scene.json"
-        file.write_text(json.dumps(scene(case, n, steps)))
+        file.write_text(json.dumps(scene(case, n, steps, discretization)))
         done = subprocess.run([program, "run", file, "--out", Path(folder) / "out"], text=True, capture_output=True,
                               env=os.environ | {"OMP_NUM_THREADS": "1"})  # fmt: skip
         if done.returncode:
@@ -54,12 +55,13 @@ def main():
     parser.add_argument("--sizes", type=int, nargs="+", default=[20, 40, 80, 120])
     parser.add_argument("--cases", nargs="+", choices=CASES, default=CASES)
     parser.add_argument("--steps", type=int, default=100)
+    parser.add_argument("--discretization", choices=("node_to_facet", "dual_mortar"), default="node_to_facet")
     options = parser.parse_args()
     print("| case | n | interfaces, ms a step | internal forces, ms a step | ratio | interfaces, us a node |")
     print("| --- | --- | --- | --- | --- | --- |")
     for case in options.cases:
         for n in options.sizes:
-            summary = run(options.program, case, n, options.steps)
+            summary = run(options.program, case, n, options.steps, options.discretization)
             seconds, steps = summary["seconds"], summary["steps"]
             interfaces, forces = (1e3 * seconds[part] / steps for part in ("interfaces", "internal_forces"))
             nodes = (n + 1) ** 2

@@ -64,6 +64,9 @@ std::vector<std::pair<std::string, json>> resumed_scenes() {
   for (const char* name : {"block_impact", "two_blocks", "rotating_spring", "postit_test2", "postit_test3",
                            "two_bars", "bouncing_ball"})
     scenes.emplace_back(name, shipped(name));
+  json mortar = shipped("two_blocks");
+  mortar["interfaces"][1]["against"]["discretization"] = "dual_mortar";
+  scenes.emplace_back("two_blocks_by_dual_mortar", mortar);
   return scenes;
 }
 

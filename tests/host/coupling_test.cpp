@@ -123,9 +123,9 @@ TEST(NodeToFacet, GapIsContinuousAcrossFacetsAndOpenBeyondTheBorder) {
       EXPECT_NEAR(contact_point.normal[2], 1.0, 1e-15) << "x " << x;
       double sum = 0.0;
       Eigen::Vector3d foot = Eigen::Vector3d::Zero();
-      for (std::size_t i = 0; i < 4; ++i) {
-        sum += contact_point.weights[i];
-        foot += contact_point.weights[i] * scene.model->position().segment<3>(3 * contact_point.partners[i]);
+      for (const auto& [partner, weight] : contact_point.partners) {
+        sum += weight;
+        foot += weight * scene.model->position().segment<3>(3 * Eigen::Index{partner});
       }
       EXPECT_NEAR(sum, 1.0, 1e-15) << "x " << x;
       EXPECT_LE((foot - Eigen::Vector3d(0.3 + x, 0.3 + 0.5 * x, 0.5)).norm(), 1e-14) << "x " << x;

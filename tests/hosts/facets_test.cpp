@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -493,6 +494,73 @@ TEST(Facets, AreSegmentsInThePlane) {
   EXPECT_EQ(gap, (std::array<double, 4>{0.25, 0.5, std::hypot(0.25, 0.25), 0.5}));
   EXPECT_EQ(weights, (std::array<double, 8>{0.5, 0.5, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0}));
   EXPECT_EQ(normal, (std::array<double, 8>{0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0}));
+}
+
+// Faces of four points each, while the points sink through the facets and slide over them: no facet whose
+// corners come close is missing, and few others are there.
+TEST(Facets, FindThoseThatAFaceOverlaps) {
+  Searched plate = plates(12, 0.3, 0.0);
+  const std::size_t side = 13;
+  std::vector<std::int32_t> faces;
+  for (std::size_t j = 0; j + 1 < side; ++j)
+    for (std::size_t i = 0; i + 1 < side; ++i)
+      for (const std::size_t k : {j * side + i, j * side + i + 1, (j + 1) * side + i + 1, (j + 1) * side + i})
+        faces.push_back(static_cast<std::int32_t>(k));
+  ASSERT_EQ(plate.points.size(), side * side);
+  std::vector<std::int64_t> first(faces.size() / 4 + 1);
+  std::vector<std::int32_t> found(1);
+  ilaw_facets_overlaps_of asked{};
+  asked.struct_size = sizeof asked;
+  asked.corner_count = 4;
+  asked.count = static_cast<std::int64_t>(faces.size() / 4);
+  asked.points = faces.data();
+  asked.distance = 0.05;
+  asked.first = first.data();
+  const auto low_and_high = [&](const auto& nodes, std::size_t c) {
+    double low = 1e9, high = -1e9;
+    for (const std::int32_t node : nodes) {
+      low = std::min(low, plate.now[static_cast<std::size_t>(node)][c]);
+      high = std::max(high, plate.now[static_cast<std::size_t>(node)][c]);
+    }
+    return std::array{low, high};
+  };
+  for (int step = 0; step < 20; ++step) {
+    for (const std::int32_t node : plate.points)
+      plate.now[static_cast<std::size_t>(node)] =
+          plate.now[static_cast<std::size_t>(node)] + Point{0.013, 0.007, -0.03};
+    plate.update();
+    asked.capacity = static_cast<std::int64_t>(found.size());
+    asked.facets = found.data();
+    ASSERT_EQ(ilaw_facets_overlaps(plate.search.get(), &asked), ILAW_OK);
+    found.resize(std::max(found.size(), static_cast<std::size_t>(first.back())));
+    asked.capacity = static_cast<std::int64_t>(found.size());
+    asked.facets = found.data();
+    ASSERT_EQ(ilaw_facets_overlaps(plate.search.get(), &asked), ILAW_OK);
+    ASSERT_LE(first.back(), asked.capacity);
+    std::int64_t close = 0;
+    for (std::size_t f = 0; f + 1 < first.size(); ++f) {
+      std::array<std::int32_t, 4> face;
+      for (std::size_t k = 0; k < 4; ++k) face[k] = plate.points[static_cast<std::size_t>(faces[4 * f + k])];
+      const auto begin = found.begin() + first[f], end = found.begin() + first[f + 1];
+      for (std::size_t m = 0; m < plate.facets.size(); ++m) {
+        double square = 0.0;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const auto [low, high] = low_and_high(face, c);
+          const auto [other_low, other_high] = low_and_high(plate.facets[m], c);
+          square += std::pow(std::max({low - other_high, other_low - high, 0.0}), 2);
+        }
+        if (square > 0.05 * 0.05) continue;
+        ++close;
+        EXPECT_TRUE(std::binary_search(begin, end, static_cast<std::int32_t>(m))) << f << ' ' << m;
+      }
+    }
+    EXPECT_LE(first.back(), 3 * close + 20);  // boxes lie along the axes of the surface
+  }
+  asked.capacity = -1;
+  EXPECT_EQ(ilaw_facets_overlaps(plate.search.get(), &asked), ILAW_INVALID_ARGUMENT);
+  asked.capacity = 0;
+  faces[0] = static_cast<std::int32_t>(plate.points.size());
+  EXPECT_EQ(ilaw_facets_overlaps(plate.search.get(), &asked), ILAW_INVALID_ARGUMENT);
 }
 
 TEST(Facets, RefuseWrongCalls) {

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 // The folders of host_mock from the ground up: each may include itself and those before it.
 const std::vector<std::string> floors = {
-    "host/base",    "host/model",        "host/contact",       "host/step",         "host/scene",
+    "host/base",    "host/mortar",       "host/model",         "host/contact",      "host/step", "host/scene",
     "host/results", "instruments/study", "instruments/stress", "instruments/bench", "cli"};
 
 std::string first_folder(const std::string& path) { return path.substr(0, path.find('/')); }
@@ -215,6 +215,8 @@ TEST(Layers, IncludesThatRunUpAreSeen) {
       {"api/search/search.cpp", "ilaw/coupled.h", false, false},
       {"api/search/finder.cpp", "base/files.hpp", true, false},
       {"host_mock/host/contact/mesh_surface.cpp", "ilaw/search.h", false, true},
+      {"host_mock/host/contact/mortar_surface.cpp", "mortar/facet_overlap.hpp", true, true},
+      {"host_mock/host/mortar/polygon.cpp", "model/model.hpp", true, false},
       {"api/include/ilaw/kit/plugin.hpp", "ilaw/kit/detail/instance.hpp", false, true},
       {"plugins/tie/tie.cpp", "ilaw/kit/detail/gather.hpp", false, false},
       {"plugins/tie/tie.cpp", "ilaw/kit/window.hpp", false, true},

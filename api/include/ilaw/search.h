@@ -95,6 +95,21 @@ enum {
   ILAW_PLACE_BEYOND = 2, /* beyond the border of the surface */
 };
 
+/* Facets near the faces of another body, whose corners are points of the search: for constraints that are
+ * integrated over the overlap of two faces. */
+typedef struct ilaw_facets_overlaps_of {
+  uint32_t struct_size;
+  uint32_t corner_count; /* of a face */
+  int64_t count;         /* faces */
+  const int32_t* points; /* corner_count per face: points by number from 0 on */
+  double distance;  /* facets whose bounding box comes closer than this to the face's: all that the face comes
+                       closer to are among them */
+  int64_t capacity; /* entries in facets */
+  int64_t* first;  /* out, count + 1: where the facets of each face begin, and the end. Where the end is above
+                      the capacity, facets is not complete */
+  int32_t* facets; /* out: in ascending order for each face */
+} ilaw_facets_overlaps_of;
+
 /* Counts since create. The caller sets struct_size. */
 typedef struct ilaw_facets_counts {
   uint32_t struct_size;
@@ -119,6 +134,8 @@ void ILAW_CALL ilaw_facets_destroy(ilaw_facets* search); /* null is allowed */
 ilaw_result ILAW_CALL ilaw_facets_update(ilaw_facets* search, const ilaw_facets_positions* positions);
 ilaw_result ILAW_CALL ilaw_facets_near(ilaw_facets* search, ilaw_facets_nearby* nearby);
 ilaw_result ILAW_CALL ilaw_facets_pairs(ilaw_facets* search, const ilaw_facets_pairs_of* pairs);
+ilaw_result ILAW_CALL ilaw_facets_overlaps(const ilaw_facets* search,
+                                           const ilaw_facets_overlaps_of* overlaps);
 ilaw_result ILAW_CALL ilaw_facets_count(const ilaw_facets* search, ilaw_facets_counts* counts);
 
 /* Size of each struct in its first version, the least that is accepted. */
@@ -126,6 +143,7 @@ ilaw_result ILAW_CALL ilaw_facets_count(const ilaw_facets* search, ilaw_facets_c
 #define ILAW_FACETS_POSITIONS_SIZE_1_0 ILAW_SIZE_TO(ilaw_facets_positions, displacement)
 #define ILAW_FACETS_NEARBY_SIZE_1_0 ILAW_SIZE_TO(ilaw_facets_nearby, slack)
 #define ILAW_FACETS_PAIRS_OF_SIZE_1_0 ILAW_SIZE_TO(ilaw_facets_pairs_of, approach)
+#define ILAW_FACETS_OVERLAPS_OF_SIZE_1_0 ILAW_SIZE_TO(ilaw_facets_overlaps_of, facets)
 #define ILAW_FACETS_COUNTS_SIZE_1_0 ILAW_SIZE_TO(ilaw_facets_counts, motion)
 
 #if defined(ILAW_BUILDING_SHARED_SEARCH)

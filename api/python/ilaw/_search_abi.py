@@ -75,6 +75,19 @@ class facets_pairs_of(ctypes.Structure):
     ]
 
 
+class facets_overlaps_of(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("corner_count", c_uint32),
+        ("count", c_int64),
+        ("points", c_void_p),
+        ("distance", c_double),
+        ("capacity", c_int64),
+        ("first", c_void_p),
+        ("facets", c_void_p),
+    ]
+
+
 class facets_counts(ctypes.Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -95,5 +108,6 @@ SIGNATURES = {
     "ilaw_facets_update": (c_int32, [c_void_p, POINTER(facets_positions)]),
     "ilaw_facets_near": (c_int32, [c_void_p, POINTER(facets_nearby)]),
     "ilaw_facets_pairs": (c_int32, [c_void_p, POINTER(facets_pairs_of)]),
+    "ilaw_facets_overlaps": (c_int32, [c_void_p, POINTER(facets_overlaps_of)]),
     "ilaw_facets_count": (c_int32, [c_void_p, POINTER(facets_counts)]),
 }

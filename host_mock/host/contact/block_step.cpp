@@ -150,8 +150,8 @@ class BlockWalk {
     double value = v[first_dof(i) + c];
     if constexpr (Partnered) {
       const ContactPoint& point = at_.point[contact(i)];
-      for (std::size_t p = 0; p < static_cast<std::size_t>(point.partner_count); ++p)
-        value -= point.weights[p] * v[Eigen::Index{D} * point.partners[p] + c];
+      for (const Partner& partner : point.partners)
+        value -= partner.weight * v[Eigen::Index{D} * partner.node + c];
     }
     return value;
   }

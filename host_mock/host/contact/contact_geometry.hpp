@@ -29,9 +29,9 @@ inline ContactGeometry locate_contact(const InterfaceSetup& setup, int node_inde
 
 // The velocity of a node relative to its partners.
 inline Vector relative_velocity(const ContactPoint& point, int node, Eigen::Index dimension, const Dofs& v) {
-  Vector relative = v.segment(node * dimension, dimension);
-  for (std::size_t p = 0; p < static_cast<std::size_t>(point.partner_count); ++p)
-    relative -= point.weights[p] * v.segment(point.partners[p] * dimension, dimension);
+  Vector relative = point.own_weight * v.segment(node * dimension, dimension);
+  for (const Partner& partner : point.partners)
+    relative -= partner.weight * v.segment(partner.node * dimension, dimension);
   return relative;
 }
 

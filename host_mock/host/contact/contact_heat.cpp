@@ -34,13 +34,12 @@ void ContactHeat::open(double time, std::size_t contact_count, const std::vector
 void ContactHeat::give(std::size_t contact, int node, const ContactPoint& point,
                        ContactArrays& contacts) const {
   double temperature = obstacle_temperature_, capacity = std::numeric_limits<double>::infinity();
-  if (point.partner_count > 0) {
+  if (!point.partners.empty()) {
     temperature = capacity = 0.0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(point.partner_count); ++i) {
-      const double weight = point.weights[i];
-      temperature += weight * temperature_[point.partners[i]];
-      const double sum = sums_of_weights_ ? sums_of_weights_[point.partners[i]] : std::fabs(weight);
-      capacity += std::fabs(weight) * sum / capacity_[point.partners[i]];
+    for (const auto& [partner, weight] : point.partners) {
+      temperature += weight * temperature_[partner];
+      const double sum = sums_of_weights_ ? sums_of_weights_[partner] : std::fabs(weight);
+      capacity += std::fabs(weight) * sum / capacity_[partner];
     }
     capacity = 1.0 / capacity;
   }

@@ -22,7 +22,7 @@ void Counterpart::gap_bounds(int first, int count, const Dofs& u, double time, d
 
 ContactPoint RigidCounterpart::contact_point(int node_index, const Dofs& u, double time) const {
   const RigidSurface surface = obstacle_->at(position(node_index, u), time);
-  return {surface.gap, surface.normal, 0, {}, {}, false};
+  return {surface.gap, surface.normal, {}};
 }
 
 void RigidCounterpart::gap_bounds(int first, int count, const Dofs& u, double time, double* bounds) const {
@@ -38,7 +38,7 @@ void RigidCounterpart::gap_bounds(int first, int count, const Dofs& u, double ti
 ContactPoint NodeCounterpart::contact_point(int node_index, const Dofs& u, double /*time*/) const {
   const int partner = partners_[static_cast<std::size_t>(node_index)];
   const Vector apart = position(node_index, u) - model_.position(partner, u);
-  return {apart.dot(normal_), normal_, 1, {partner}, {1.0}, false};
+  return {apart.dot(normal_), normal_, {{partner, 1.0}}};
 }
 
 }  // namespace ilaw::host

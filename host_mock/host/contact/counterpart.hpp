@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <iosfwd>
 #include <memory>
 #include <optional>
@@ -17,23 +18,54 @@
 
 namespace ilaw::host {
 
-// Where a node faces its counterpart, and how. The relative velocity of the contact is
-//   v = V_node - sum_i weight_i V_partner_i - (velocity of the obstacle).
-struct ContactPoint {
-  static constexpr int most_partners = 4;
+struct Partner {
+  int node;
+  double weight;
+};
 
+// The partners of a contact: the corners of a facet, or any number where weights are integrated.
+class Partners {
+ public:
+  static constexpr std::size_t few = 4;
+
+  Partners() = default;
+  Partners(std::initializer_list<Partner> partners) {
+    for (const Partner& partner : partners) add(partner);
+  }
+  void add(const Partner& partner) {
+    if (count_ == few) many_.assign(few_.begin(), few_.end());
+    if (count_ < few)
+      few_[count_] = partner;
+    else
+      many_.push_back(partner);
+    ++count_;
+  }
+  bool empty() const { return count_ == 0; }
+  std::size_t size() const { return count_; }
+  const Partner* begin() const { return count_ <= few ? few_.data() : many_.data(); }
+  const Partner* end() const { return begin() + count_; }
+
+ private:
+  std::size_t count_ = 0;
+  std::array<Partner, few> few_{};
+  std::vector<Partner> many_;  // all of them, where they are more than few
+};
+
+// Where a node faces its counterpart, and how. The relative velocity of the contact is
+//   v = own_weight V_node - sum_i weight_i V_partner_i - (velocity of the obstacle).
+struct ContactPoint {
   double gap = 0.0;
   Vector normal;
-  int partner_count = 0;
-  std::array<int, most_partners> partners{};
-  std::array<double, most_partners> weights{};
+  Partners partners;
   bool is_beyond_border = false;  // beside the surface of a mesh
+  double own_weight = 1.0;
+  double area = 0.0;  // that the contact stands for; 0: the tributary area of its node
 
   // Calls visit(node, weight) for the contact's own node and its partners.
   template <class Visit>
   void for_each_node(int node, Visit visit) const {
-    visit(node, 1.0);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(partner_count); ++i) visit(partners[i], -weights[i]);
+    visit(node, own_weight);
+    for (const Partner& partner : partners) visit(partner.node, -partner.weight);
   }
   // H along an axis: inverse_mass is 1/m, or less where loads take a part of an impulse, per degree of
   // freedom.

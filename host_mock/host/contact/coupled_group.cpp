@@ -8,10 +8,10 @@
 
 namespace ilaw::host {
 
-CoupledGroup::CoupledGroup(const Law& law, int dimension, ilaw_delassus_form form, int partner_count)
+CoupledGroup::CoupledGroup(const Law& law, int dimension, ilaw_delassus_form form, bool has_partners)
     : dimension_(dimension),
       form_(form),
-      partner_count_(partner_count),
+      has_partners_(has_partners),
       state_size_(law.info().state_size),
       law_(law, dimension),
       parameters_(law.info().per_node_parameter_count),
@@ -19,10 +19,12 @@ CoupledGroup::CoupledGroup(const Law& law, int dimension, ilaw_delassus_form for
 
 void CoupledGroup::open() {
   contacts_.clear();
+  first_partner_.assign(1, 0);
+  partners_.clear();
   body_.clear();
   counterpart_.clear();
   for (std::vector<double>* values :
-       {&weights_, &surface_, &surface_before_, &gap_, &normal_, &area_, &state_})
+       {&own_weights_, &weights_, &surface_, &surface_before_, &gap_, &normal_, &area_, &state_})
     values->clear();
   for (std::vector<double>& values : parameters_) values.clear();
 }
@@ -34,11 +36,9 @@ void CoupledGroup::add(const CoupledContact& contact, const ContactArrays& array
   };
   contacts_.push_back(contact.contact);
   body_.push_back(contact.node);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(partner_count_); ++i) {
-    counterpart_.push_back(contact.point.partners[i]);
-    weights_.push_back(contact.point.weights[i]);
-  }
-  if (partner_count_ == 0) counterpart_.push_back(-1);
+  own_weights_.push_back(contact.point.own_weight);
+  partners_.insert(partners_.end(), contact.point.partners.begin(), contact.point.partners.end());
+  first_partner_.push_back(partners_.size());
   append(surface_, contact.surface);
   append(surface_before_, contact.surface_before);
   gap_.push_back(contact.point.gap);
@@ -46,6 +46,20 @@ void CoupledGroup::add(const CoupledContact& contact, const ContactArrays& array
   if (!arrays.area.empty()) area_.push_back(arrays.area[k]);
   for (std::size_t p = 0; p < parameters_.size(); ++p) parameters_[p].push_back(arrays.parameters[p][k]);
   for (std::size_t number = 0; number < state_size_; ++number) state_.push_back(arrays.state.at(k, number));
+}
+
+// As many entries for each contact as the longest one has.
+void CoupledGroup::lay_out_partners() {
+  std::size_t most = 1;
+  for (std::size_t i = 0; i < count(); ++i) most = std::max(most, first_partner_[i + 1] - first_partner_[i]);
+  given_.counterpart_count = static_cast<std::uint32_t>(most);
+  counterpart_.assign(most * count(), -1);
+  weights_.assign(most * count(), 0.0);
+  for (std::size_t i = 0; i < count(); ++i)
+    for (std::size_t p = first_partner_[i]; p < first_partner_[i + 1]; ++p) {
+      counterpart_[most * i + p - first_partner_[i]] = partners_[p].node;
+      weights_[most * i + p - first_partner_[i]] = partners_[p].weight;
+    }
 }
 
 void CoupledGroup::read_parameters(const ContactArrays& arrays) {
@@ -126,15 +140,18 @@ const ilaw_contacts& CoupledGroup::close(const Vector& tangent, const StepView& 
   given_.law = law_.law();
   given_.instance = law_.instance();
   given_.batch = &batch_;
+  lay_out_partners();
   given_.body = body_.data();
   given_.counterpart = counterpart_.data();
-  if (partner_count_ == 0) {
+  if (!has_partners_) {
     given_.wall_velocity = ilaw::input(surface_.data(), dimension_, 1);
     given_.wall_previous = ilaw::input(surface_before_.data(), dimension_, 1);
-  } else {
-    given_.counterpart_count = static_cast<std::uint32_t>(partner_count_);
-    if (partner_count_ > 1) given_.counterpart_weight = ilaw::input(weights_.data(), partner_count_, 1);
+  } else if (given_.counterpart_count > 1) {
+    given_.counterpart_weight = ilaw::input(weights_.data(), given_.counterpart_count, 1);
   }
+  const auto is_one = [](double weight) { return weight == 1.0; };
+  if (!std::all_of(own_weights_.begin(), own_weights_.end(), is_one))
+    given_.body_weight = ilaw::input(own_weights_.data(), 1, 1);
   return given_;
 }
 

@@ -24,8 +24,8 @@ struct CoupledContact {
 
 class CoupledGroup {
  public:
-  // partner_count: bodies on the other side of a contact; 0: an obstacle.
-  CoupledGroup(const Law& law, int dimension, ilaw_delassus_form form, int partner_count);
+  // has_partners: bodies are on the other side, else an obstacle.
+  CoupledGroup(const Law& law, int dimension, ilaw_delassus_form form, bool has_partners);
 
   // ---- before a solve ----
   void open();
@@ -72,17 +72,21 @@ class CoupledGroup {
   void keep(ContactList contacts, std::vector<double> forces);
 
  private:
+  void lay_out_partners();
+
   int dimension_;
   ilaw_delassus_form form_;
-  int partner_count_;
+  bool has_partners_;
   std::size_t state_size_;
   WatchedLaw law_;
   ContactList contacts_, kept_;
-  std::vector<double> kept_forces_;  // d for each of kept_
-  std::vector<double> start_;        // the same for each contact of the interface; zero if not kept
+  std::vector<double> kept_forces_;         // d for each of kept_
+  std::vector<double> start_;               // the same for each contact of the interface; zero if not kept
+  std::vector<std::size_t> first_partner_;  // of each contact, and the end
+  std::vector<Partner> partners_;           // contact after contact
   std::vector<std::int32_t> body_, counterpart_;
-  std::vector<double> weights_, surface_, surface_before_, gap_, normal_, area_, impulse_, energy_, state_,
-      next_state_;
+  std::vector<double> own_weights_, weights_, surface_, surface_before_, gap_, normal_, area_, impulse_,
+      energy_, state_, next_state_;
   std::vector<std::vector<double>> parameters_, amounts_;
   std::vector<std::uint8_t> status_;
   std::vector<ilaw_input> parameter_inputs_;

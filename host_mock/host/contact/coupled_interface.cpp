@@ -13,12 +13,9 @@ namespace ilaw::host {
 namespace {
 
 CoupledGroup group_of(const Interface& interface, const Law& law, int dimension) {
-  const Counterpart& counterpart = *interface.setup().counterpart;
-  int partners = 0;
-  if (!counterpart.partners().empty())
-    partners = counterpart.shares_partners() ? ContactPoint::most_partners : 1;
-  const bool is_driven = interface.setup().has_driven_nodes;
-  return {law, dimension, is_driven ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR, partners};
+  const bool is_driven = interface.setup().has_driven_nodes,
+             has_partners = !interface.setup().counterpart->partners().empty();
+  return {law, dimension, is_driven ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR, has_partners};
 }
 
 }  // namespace
@@ -43,7 +40,8 @@ const ilaw_contacts& CoupledInterface::open(const StepView& step) {
     contacts.vector(contacts.impulse, contact).setZero();
     contacts.status[k] = ILAW_FREE;
     if (point.is_beyond_border && setup.counterpart->is_held(contacts.node_index[k])) ++interface_.sums_.left;
-    if (point.partner_count > 0) {
+    if (point.area > 0.0 && !contacts.area.empty()) contacts.area[k] = setup.area_factor * point.area;
+    if (!point.partners.empty()) {
       contacts.point[k] = point;
       interface_.find_delassus(k);
     }

@@ -25,6 +25,7 @@ struct InterfaceSetup {
   Arguments arguments;
   std::vector<int> nodes;
   std::vector<double> areas;  // tributary, per node
+  double area_factor = 1.0;   // which they include
   std::unique_ptr<Counterpart> counterpart;
   double birth = 0.0, death = std::numeric_limits<double>::infinity();  // while birth <= t < death
   Vector tangent;                       // first tangent of all nodes; empty: none given

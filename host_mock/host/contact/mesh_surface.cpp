@@ -18,13 +18,14 @@ namespace {
 
 // How far a facet goes on beyond the border, in parts of the shortest edge.
 constexpr double entering_rim = 1e-3, leaving_rim = 0.1;
+constexpr std::size_t corner_count = 4;
 
-void check(ilaw_result code) {
+}  // namespace
+
+void check_search(ilaw_result code) {
   if (code == ILAW_OUT_OF_MEMORY) throw std::bad_alloc();
   if (code != ILAW_OK) throw std::logic_error("ilaw/search.h refuses a call: code " + std::to_string(code));
 }
-
-}  // namespace
 
 MeshSurface::MeshSurface(const Model& model, std::vector<int> nodes, const NodeSet& surface)
     : Counterpart(model, std::move(nodes), surface.nodes),
@@ -34,7 +35,7 @@ MeshSurface::MeshSurface(const Model& model, std::vector<int> nodes, const NodeS
   ilaw_facets_setup setup{};
   setup.struct_size = sizeof setup;
   setup.dimension = 3;
-  setup.corner_count = ContactPoint::most_partners;
+  setup.corner_count = corner_count;
   setup.node_count = model.node_count();
   setup.facet_count = static_cast<std::int64_t>(facets_.size());
   setup.facets = facets_.front().data();
@@ -42,11 +43,11 @@ MeshSurface::MeshSurface(const Model& model, std::vector<int> nodes, const NodeS
   setup.points = nodes_.data();
   setup.position = ilaw::input(model.position().data(), 3, 1);
   ilaw_facets* search = nullptr;
-  check(ilaw_facets_create(&setup, &search));
+  check_search(ilaw_facets_create(&setup, &search));
   search_.reset(search);
   ilaw_facets_counts counts{};
   counts.struct_size = sizeof counts;
-  check(ilaw_facets_count(search, &counts));
+  check_search(ilaw_facets_count(search, &counts));
   shortest_edge_ = counts.shortest_edge;
   nearby_.struct_size = sizeof nearby_;
   MeshSurface::follow(Dofs::Zero(model.mass().size()));
@@ -71,7 +72,7 @@ void MeshSurface::load(std::istream& in) {
 void MeshSurface::follow(const Dofs& u) {
   const ilaw_facets_positions positions{sizeof positions, 0, ilaw::input(model_.position().data(), 3, 1),
                                         ilaw::input(u.data(), 3, 1)};
-  check(ilaw_facets_update(search_.get(), &positions));
+  check_search(ilaw_facets_update(search_.get(), &positions));
 }
 
 // As long as nobody can have come into reach, positions are not looked at.
@@ -82,7 +83,7 @@ bool MeshSurface::find_near(const Dofs& u, const Approach& approach) {
   travelled_ = 0.0;
   nearby_.forced = approach.is_forced ? 1 : 0;
   nearby_.reach = approach.reach;
-  check(ilaw_facets_near(search_.get(), &nearby_));
+  check_search(ilaw_facets_near(search_.get(), &nearby_));
   if (nearby_.is_new == 0) return false;
   std::fill(is_listed_.begin(), is_listed_.end(), std::uint8_t{0});
   for (std::int64_t i = 0; i < nearby_.count; ++i)
@@ -97,7 +98,7 @@ void MeshSurface::find_pair(int node_index, ilaw_facets_pairs_of asked) const {
   asked.count = 1;
   asked.points = &node_index;
   asked.rim = ilaw::input(&rim, 0, 0);
-  check(ilaw_facets_pairs(search_.get(), &asked));
+  check_search(ilaw_facets_pairs(search_.get(), &asked));
 }
 
 double MeshSurface::gap_bound(int node_index, const Dofs& /*u*/, double /*time*/) const {
@@ -113,16 +114,17 @@ double MeshSurface::gap_bound(int node_index, const Dofs& /*u*/, double /*time*/
 ContactPoint MeshSurface::contact_point(int node_index, const Dofs& /*u*/, double /*time*/) const {
   std::int32_t facet = 0, place = 0;
   ContactPoint found;
+  std::array<double, corner_count> weights{};
   found.normal.resize(3);
   ilaw_facets_pairs_of asked{};
   asked.facet = &facet;
   asked.place = &place;
   asked.gap = ilaw::output(&found.gap, 0, 0);
   asked.normal = ilaw::output(found.normal.data(), 0, 1);
-  asked.weights = ilaw::output(found.weights.data(), 0, 1);
+  asked.weights = ilaw::output(weights.data(), 0, 1);
   find_pair(node_index, asked);
-  found.partner_count = ContactPoint::most_partners;
-  found.partners = facets_[static_cast<std::size_t>(std::max(facet, 0))];
+  const Facet& corners = facets_[static_cast<std::size_t>(std::max(facet, 0))];
+  for (std::size_t k = 0; k < corner_count; ++k) found.partners.add({corners[k], weights[k]});
   found.is_beyond_border = place == ILAW_PLACE_BEYOND;
   return found;
 }

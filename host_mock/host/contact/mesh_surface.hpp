@@ -11,6 +11,9 @@
 
 namespace ilaw::host {
 
+// Throws where a call of ilaw/search.h was refused.
+void check_search(ilaw_result code);
+
 // A point is projected on the closest facet (ilaw/search.h), a bilinear patch of four nodes or a triangle:
 // the contact's partners are these nodes, with the shape functions there as weights, so that impulses
 // balance.
@@ -35,8 +38,13 @@ class MeshSurface : public Counterpart {
   void save(std::ostream& out) const override;
   void load(std::istream& in) override;
 
- private:
+ protected:
   using Facet = std::array<int, 4>;
+  const std::vector<Facet>& facets() const { return facets_; }
+  ilaw_facets* search() const { return search_.get(); }
+  double shortest_edge() const { return shortest_edge_; }
+
+ private:
   struct Destroy {
     void operator()(ilaw_facets* search) const { ilaw_facets_destroy(search); }
   };

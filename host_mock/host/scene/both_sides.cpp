@@ -22,6 +22,9 @@ void expand_both_sides(nlohmann::json& scene) {
     const std::string pointer = at("/interfaces", i);
     if (!against.contains("surface"))
       throw SceneError(pointer + "/against/both_sides", "found pairs of nodes, expected a 'surface'");
+    if (against.value("discretization", "node_to_facet") != "node_to_facet")
+      throw SceneError(pointer + "/against/both_sides",
+                       "found " + against["discretization"].dump() + ", which is one of both sides already");
     if (!interfaces[i]["nodes"].is_string())
       throw SceneError(pointer + "/nodes", "found a list, expected a surface, which its other side meets");
     interfaces[i]["area_factor"] = 0.5 * interfaces[i].value("area_factor", 1.0);

@@ -3,6 +3,7 @@
 
 #include "contact/counterpart.hpp"
 #include "contact/mesh_surface.hpp"
+#include "contact/mortar_surface.hpp"
 #include "scene/json_text.hpp"
 #include "scene/values.hpp"
 
@@ -98,14 +99,20 @@ std::unique_ptr<Counterpart> read_partners(const json& against, const NodeSet& o
   return std::make_unique<NodeCounterpart>(model, own.nodes, partners.nodes, normal);
 }
 
-std::unique_ptr<Counterpart> read_surface(const std::string& name, const NodeSet& own, const Model& model,
+std::unique_ptr<Counterpart> read_surface(const json& against, const NodeSet& own, const Model& model,
                                           const std::string& pointer) {
-  const NodeSet& surface = select_surface(name, model, pointer);
+  const NodeSet& surface = select_surface(against["surface"].get<std::string>(), model, pointer + "/surface");
   for (const int node : surface.nodes)
     if (std::find(own.nodes.begin(), own.nodes.end(), node) != own.nodes.end())
-      throw SceneError(pointer, "node " + std::to_string(node) +
-                                    " would meet its own facet, expected the surface of another body");
-  return std::make_unique<MeshSurface>(model, own.nodes, surface);
+      throw SceneError(
+          pointer + "/surface",
+          "node " + std::to_string(node) + " would meet its own facet, expected the surface of another body");
+  if (against.value("discretization", "node_to_facet") == "node_to_facet")
+    return std::make_unique<MeshSurface>(model, own.nodes, surface);
+  if (own.facets.empty())
+    throw mistake(pointer + "/discretization", against["discretization"].dump(),
+                  "\"node_to_facet\", or a face with facets as the 'nodes' of the interface");
+  return std::make_unique<MortarSurface>(model, own, surface);
 }
 
 }  // namespace
@@ -119,7 +126,7 @@ std::unique_ptr<Counterpart> read_counterpart(const json& interface, const NodeS
         model, own.nodes, read_obstacle(interface["obstacle"], model.dimension(), pointer + "/obstacle"));
   const json& against = interface["against"];
   if (!against.contains("surface")) return read_partners(against, own, model, pointer + "/against");
-  return read_surface(against["surface"].get<std::string>(), own, model, pointer + "/against/surface");
+  return read_surface(against, own, model, pointer + "/against");
 }
 
 }  // namespace ilaw::host

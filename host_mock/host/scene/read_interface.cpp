@@ -96,6 +96,17 @@ std::map<std::string, std::vector<double>> read_fields(const json& scene, const 
   return fields;
 }
 
+// Weights that are integrated have areas of their own.
+void read_areas(InterfaceSetup& setup, const Scene& scene) {
+  const Dofs& u = scene.model->initial_displacement();
+  setup.counterpart->follow(u);
+  for (std::size_t k = 0; k < setup.nodes.size(); ++k)
+    if (const ContactPoint point =
+            setup.counterpart->contact_point(static_cast<int>(k), u, scene.start_time());
+        point.area > 0.0)
+      setup.areas[k] = setup.area_factor * point.area;
+}
+
 // "initial": all nodes touch at the start, as the faces of two meshes of one curved face are meant to.
 void read_gap_offset(const json& interface, InterfaceSetup& setup, const Scene& scene) {
   const json offset = interface.value("gap_offset", json(0.0));
@@ -118,7 +129,8 @@ InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene
   setup.library = library_of(interface, scene.file);
   setup.nodes = own.nodes;
   setup.areas = own.areas;
-  for (double& area : setup.areas) area *= interface.value("area_factor", 1.0);
+  setup.area_factor = interface.value("area_factor", setup.area_factor);
+  for (double& area : setup.areas) area *= setup.area_factor;
   setup.counterpart = read_counterpart(interface, own, *scene.model, pointer);
   setup.arguments = read_arguments(interface.value("parameters", json::object()), setup.nodes.size(),
                                    pointer + "/parameters");
@@ -132,6 +144,7 @@ InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene
                   "a time after birth, " + json(setup.birth).dump());
   setup.tangent = read_tangent(interface, setup, *scene.model, pointer + "/tangent");
   read_gap_offset(interface, setup, scene);
+  if (setup.counterpart->shares_partners()) read_areas(setup, scene);
   setup.keeps_all_active = !interface.value("skip", true);
   return setup;
 }

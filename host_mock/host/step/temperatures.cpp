@@ -67,9 +67,8 @@ void Temperatures::add_flow(const Interface& interface, std::int32_t contact) {
   sums_.friction += static_cast<Sum>(flow.body) + flow.counterpart;
   heat_[interface.node_of(contact)] += flow.body;
   const ContactPoint& point = interface.point(contact);
-  if (point.partner_count == 0) sums_.obstacles += flow.counterpart;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(point.partner_count); ++i)
-    heat_[point.partners[i]] += point.weights[i] * flow.counterpart;
+  if (point.partners.empty()) sums_.obstacles += flow.counterpart;
+  for (const auto& [partner, weight] : point.partners) heat_[partner] += weight * flow.counterpart;
 }
 
 bool Temperatures::take(const Interfaces& interfaces) {

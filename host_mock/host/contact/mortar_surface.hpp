@@ -1,0 +1,86 @@
+// mortar_surface.hpp - facets of one body against facets of another: one constraint for each secondary node,
+// with weights that are integrated over the overlap of both faces (mortar/facet_overlap.hpp).
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "contact/mesh_surface.hpp"
+#include "mortar/facet_overlap.hpp"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace ilaw::host {
+
+// The nodes of the interface are the secondary ones. A row acts along the normal of the main surface,
+// averaged by the test function: with a normal of the secondary surface, tilted faces would gain energy.
+// Weights are kept until the row has slid by a small part of an edge; the gap and the normal always follow
+// the bodies. Nodes without a row meet the closest facet, as in MeshSurface.
+class MortarSurface : public MeshSurface {
+ public:
+  // Facets of own have all their nodes in it.
+  MortarSurface(const Model& model, const NodeSet& own, const NodeSet& surface);
+
+  ContactPoint contact_point(int node_index, const Dofs& u, double time) const override;
+  double gap_bound(int node_index, const Dofs& u, double time) const override;
+  void follow(const Dofs& u) override;
+  bool find_near(const Dofs& u, const Approach& approach) override;
+  double horizon() const override { return horizon_; }
+  bool is_held(int node_index) const override;
+  void save(std::ostream& out) const override;
+  void load(std::istream& in) override;
+
+ private:
+  // What a secondary facet shares with the main surface.
+  struct Patch {
+    std::array<std::int32_t, 4> corners;  // node indices
+    std::size_t corner_count;
+    std::vector<std::int32_t> candidates;  // facets of the main surface that it may meet
+    FacetOverlap overlap;
+    double motion = 0.0;  // of both surfaces relative to each other, when it was integrated
+    bool is_stale = false;
+  };
+  // A constraint; without area: none.
+  struct Row {
+    double area = 0.0, own_weight = 1.0;
+    std::vector<Partner> partners;                         // their sum is own_weight
+    std::vector<std::pair<std::int32_t, double>> normals;  // facets of the main surface, integrals of psi
+    Eigen::Vector3d start =
+        Eigen::Vector3d::Zero();  // between the places of both sides, when the weights were made
+    Eigen::Vector3d apart = start, normal = start;
+    bool is_stale = false;
+  };
+
+  Eigen::Vector3d place(int node) const { return at_.segment<3>(3 * Eigen::Index{node}); }
+  FacetShape corners_of(const Patch& patch) const;
+  FacetShape corners_of(std::int32_t main_facet) const;
+  double motion() const;
+  void find_candidates();
+  void list_pairs(double reach);
+  void list_nodes();
+  void refresh();
+  bool has_slid(const Row& row) const;
+  void integrate(Patch& patch);
+  void assemble(std::size_t node_index);
+  void locate(std::size_t node_index);
+
+  std::vector<Patch> patches_;
+  std::vector<std::vector<std::int32_t>> patches_of_;  // by node index
+  std::vector<Row> rows_;                              // by node index
+  std::vector<std::int32_t> face_points_;              // four points for each facet, as the search takes them
+  std::vector<std::int64_t> first_;                    // of the candidates of each patch, in found_
+  std::vector<std::int32_t> found_;
+
+  // The list of patches that have candidates, and of their nodes. It is new once the surfaces may have moved
+  // so far that it is not complete.
+  std::vector<std::int32_t> listed_, listed_nodes_;
+  std::vector<std::uint8_t> is_listed_;  // by node index
+  bool is_list_made_ = false;
+  Dofs at_, at_list_;                       // positions, now and when the list was made
+  double horizon_ = 0.0, travelled_ = 0.0;  // of the list; since the surfaces were last compared with it
+  double past_motion_ = 0.0;                // before the list
+};
+
+}  // namespace ilaw::host
