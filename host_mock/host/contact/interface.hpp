@@ -20,6 +20,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ilaw::host {
@@ -32,6 +33,8 @@ class Interface {
 
   const std::string& name() const { return setup_.name; }
   const InterfaceSetup& setup() const { return setup_; }
+  // For another interface in the place of this one, which is of no use then.
+  InterfaceSetup take_setup() { return std::move(setup_); }
   const ilaw::library& library() const { return law_.library(); }
   const ilaw_instance_info& info() const { return law_.info(); }
   const std::vector<int>& nodes() const { return setup_.nodes; }
