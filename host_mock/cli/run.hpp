@@ -18,6 +18,7 @@ struct RunOptions {
   bool resume = false;
   int threads = 1;
   std::optional<double> tolerance = {};  // of coupled contacts
+  bool audits = false;                   // each step (audit/audit.hpp)
   bool shows_progress = true;
   bool tells_of_start = true;  // on stdout
 };

@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 
 // The folders of host_mock from the ground up: each may include itself and those before it.
 const std::vector<std::string> floors = {
-    "host/base",    "host/model",        "host/contact",       "host/step",         "host/scene",
-    "host/results", "instruments/study", "instruments/stress", "instruments/bench", "cli"};
+    "host/base",    "host/model",        "host/contact",      "host/step",          "host/scene",
+    "host/results", "instruments/audit", "instruments/study", "instruments/stress", "instruments/bench",
+    "cli"};
 
 std::string first_folder(const std::string& path) { return path.substr(0, path.find('/')); }
 
