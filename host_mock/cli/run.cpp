@@ -3,6 +3,7 @@
 #include "cli/run.hpp"
 #include "cli/commands.hpp"
 
+#include "audit/audit.hpp"
 #include "base/clock.hpp"
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
@@ -51,6 +52,7 @@ class Run {
         options_(options),
         integrator_(*scene.model, scene.loads, scene.interfaces, scene.dt, scene.prestress),
         fields_(scene, options.folder) {
+    if (options.audits) audit_.emplace(scene, integrator_);
     if (options.tolerance) integrator_.set_tolerance(*options.tolerance);
     if (options.resume) {
       resume();
@@ -69,7 +71,7 @@ class Run {
       check::Progress& progress = options_.shared ? *options_.shared : own;
       own.begin_at(static_cast<double>(integrator_.steps()));
       while (integrator_.steps() < scene_.steps && !stop_requested()) {
-        integrator_.step();
+        step();
         tell_of_stable_step();
         history_->add_step(integrator_);
         if (events_) events_->add_step(integrator_);
@@ -190,6 +192,12 @@ class Run {
     progress.set(steps, steps);
   }
 
+  void step() {
+    if (audit_) audit_->open();
+    integrator_.step();
+    if (audit_) audit_->close();
+  }
+
   // At once, for the run may take long; the summary has it, too.
   void tell_of_stable_step() {
     if (!record.told.empty()) return;
@@ -271,6 +279,7 @@ class Run {
   Scene& scene_;
   const RunOptions& options_;
   Integrator integrator_;
+  std::optional<Audit> audit_;
   Fields fields_;
   std::int64_t checkpoint_step_ = -1;  // of the newest one
   std::unique_ptr<History> history_;
@@ -357,6 +366,9 @@ void add_run(CLI::App& app, int& code) {
                     "Continue from the checkpoint in the folder, to the same bits");
   add_threads(*command, options->threads);
   check::add_progress(*command, options->progress);
+  command->add_flag(
+      "--audit", options->audits,
+      "Judge each step by the laws alone, momentum, energy and gaps; fail at the first that is off");
   command
       ->add_option("--tolerance", options->tolerance,
                    "Residual to which contacts that share nodes are solved, relative to the largest velocity "

@@ -22,6 +22,7 @@ struct RunOptions {
   check::ProgressForm progress = check::ProgressForm::line;
   check::Progress* shared = nullptr;  // that of a sweep, which counts the steps of its runs
   bool tells_of_start = true;         // on stdout
+  bool audits = false;                // each step (audit/audit.hpp)
 };
 
 // Runs a scene that was read into options.folder, which it makes and holds; says on stderr what goes wrong.

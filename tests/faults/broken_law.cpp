@@ -83,15 +83,42 @@ std::int64_t node_of(const ilaw_batch& batch, std::int64_t i) {
   return batch.index ? batch.index[i] - batch.index_base : i;
 }
 
+// A node that comes is stopped, until the third step lets half of its velocity in.
+double stop(const ilaw_batch& batch, std::int64_t node) {
+  const double v = batch.v_free.values[node * batch.v_free.node_stride],
+               gap = batch.gap.values[node * batch.gap.node_stride],
+               inverse_mass = batch.delassus.values[node * batch.delassus.node_stride];
+  const double part = batch.time < 2.9 ? 1.0 : 0.5;
+  return gap <= 0.0 && v < 0.0 ? -part * v / inverse_mass : 0.0;
+}
+
+// What an audit must find: an answer that depends on the calls before, and one that no such law may give.
+double false_impulse(const ilaw_batch& batch, std::int64_t node) {
+  static int calls = 0;
+  if (breaks("push")) return 1.0;  // whatever the motion
+  if (breaks("lets_in")) return stop(batch, node);
+  if (batch.time < 2.9) return 0.0;
+  if (breaks("other_answer")) return ++calls % 2 == 0 ? 1.0 : 0.0;
+  return breaks("pull") ? -1.0 : 0.0;
+}
+
+double false_energy(const ilaw_batch& batch) {
+  static int calls = 0;
+  return breaks("other_energy") && batch.time >= 2.9 && ++calls % 2 == 0 ? 1.0 : 0.0;
+}
+
 std::int32_t evaluate(const ilaw_instance*, const ilaw_batch* batch, ilaw_report* report) {
-  const double push = breaks("push") ? 1.0 : 0.0;  // whatever the motion
   for (std::int64_t i = 0; i < batch->node_count; ++i) {
     const std::int64_t node = node_of(*batch, i);
-    batch->impulse.values[node * batch->impulse.node_stride] = push;
+    batch->impulse.values[node * batch->impulse.node_stride] = false_impulse(*batch, node);
     batch->status[node * batch->status_stride] = ILAW_FREE;
     for (std::int64_t k = 0; k < ILAW_ENERGY_COUNT; ++k)
       if (batch->energy.values)
         batch->energy.values[node * batch->energy.node_stride + k * batch->energy.component_stride] = 0.0;
+    if (batch->energy.values)
+      batch->energy
+          .values[node * batch->energy.node_stride + ILAW_ENERGY_IMPACT * batch->energy.component_stride] =
+          false_energy(*batch);
   }
   if (batch->time < 2.9) return ILAW_OK;  // the third step
   if (breaks("throw")) throw std::runtime_error("what it threw");

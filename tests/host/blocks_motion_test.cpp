@@ -179,10 +179,6 @@ void expect_the_same_bits(const json& source, int steps) {
   }
 }
 
-TEST(Threads, GiveTheBitsOfOneInTheShippedBlockImpact) {
-  expect_the_same_bits(json::parse(std::ifstream(scene_files::named("block_impact.json"))), 200);
-}
-
 // 4761 contacts: more than are given to one thread.
 TEST(Threads, GiveTheBitsOfOneWhereTheInterfaceIsSharedOut) {
   json model = block({1.0, 1.0, 0.05}, {68, 68, 2}, material("neo_hookean", 0.3));

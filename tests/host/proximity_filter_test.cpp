@@ -56,33 +56,6 @@ Tally expect_same_bits(const json& source) {
   return integrator.tally();
 }
 
-// ---- shipped scenes -------------------------------------------------------------------------------------
-
-json shortened(const fs::path& file) {
-  json scene = read_scene_source(file);
-  // Long ones are shortened and coarsened: what is tested is each step.
-  if (file.stem() == "dcb_peel") {
-    scene["model"]["blocks"][0]["elements"] = {40, 1, 2};
-    scene["time"]["end"] = 20.0;
-  }
-  if (file.stem() == "postit_3d") scene["model"]["blocks"][0]["elements"] = {20, 2, 1};
-  return scene;
-}
-
-class ProximityFilterInScene : public ::testing::TestWithParam<fs::path> {};
-
-TEST_P(ProximityFilterInScene, GivesTheBitsOfAskingAll) {
-  const Tally tally = expect_same_bits(shortened(GetParam()));
-  // In these, contacts are apart for a while.
-  for (const char* apart : {"bar_on_wall", "block_impact", "bouncing_ball", "two_blocks"})
-    if (GetParam().stem() == apart) {
-      EXPECT_GT(tally.skipped, 0);
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(Host, ProximityFilterInScene, ::testing::ValuesIn(scene_files::all()),
-                         [](const auto& drawn) { return drawn.param.stem().string(); });
-
 // ---- drawn scenes ---------------------------------------------------------------------------------------
 
 json vector_within(double size, Random& draw) { return {draw(-size, size), draw(-size, size)}; }

@@ -29,23 +29,6 @@ TEST_P(ShippedScene, ClosesItsBalanceAndNeverGainsEnergyAtInterfaces) {
   EXPECT_EQ(dissipated > 0.0, GetParam().stem() != "glued_bar");
 }
 
-// Blocks of contacts against the text of the step, contact by contact: positions, velocities, states,
-// energies.
-TEST_P(ShippedScene, HasTheBitsOfThePlainStep) {
-  Scene fused = read_scene(GetParam()), plain = read_scene(GetParam());
-  for (const auto& interface : plain.interfaces) interface->step_plainly();
-  Integrator of_fused = integrator_of(fused), of_plain = integrator_of(plain);
-  while (of_fused.steps() < std::min<std::int64_t>(fused.steps, 2000)) {
-    of_fused.step();
-    of_plain.step();
-    ASSERT_EQ(of_fused.velocity(), of_plain.velocity()) << "step " << of_fused.steps();
-  }
-  std::ostringstream saved_fused, saved_plain;
-  of_fused.save(saved_fused);
-  of_plain.save(saved_plain);
-  EXPECT_TRUE(saved_fused.str() == saved_plain.str()) << "states, or the accounts of energy";
-}
-
 INSTANTIATE_TEST_SUITE_P(Host, ShippedScene, ::testing::ValuesIn(scene_files::all()),
                          [](const auto& drawn) { return drawn.param.stem().string(); });
 

@@ -420,65 +420,6 @@ TEST(Thermal, SharesFrictionBetweenTwoBlocks) {
 
 // ---- the host -------------------------------------------------------------------------------------------
 
-std::vector<double> temperatures_of(const Integrator& integrator, const Scene& scene) {
-  std::vector<double> temperatures;
-  for (int node = 0; node < scene.model->node_count(); ++node)
-    temperatures.push_back(integrator.temperatures()->at(node));
-  return temperatures;
-}
-
-TEST(Thermal, HasTheSameBitsContactByContact) {
-  const Bar below{.conductivity = 0.4, .temperature = 350, .elements = 2}, above{.elements = 3};
-  const json law = {{"law", "conductance"}, {"parameters", {{"conductance", 2}}}};
-  for (const json& scene : {sliding_point(0.0031, 0.25), two_columns(below, above, 0.01, 1.0, law)}) {
-    std::vector<std::vector<double>> temperatures;
-    for (const bool plainly : {false, true}) {
-      Scene read = scene_of(scene.dump());
-      Integrator integrator = integrator_of(read);
-      if (plainly) read.interfaces[0]->step_plainly();
-      const std::vector<double> before = temperatures_of(integrator, read);
-      run(integrator, 100);
-      temperatures.push_back(temperatures_of(integrator, read));
-      EXPECT_NE(temperatures.back(), before);
-    }
-    EXPECT_EQ(temperatures[0], temperatures[1]);
-  }
-}
-
-// A block that is drawn over a floor, with its top held: heat flows into both, and out of the top.
-json drawn_block(const Bar& bar, double dt) {
-  json scene = scene_with({column(bar, "bar", 0)}, dt, 1.0);
-  scene["initial"] = {{{"gradient", {{0, 0, 0}, {0, 0, 0}, {0, 0, -1e-3}}}}};
-  scene["loads"] = {held("bar.z_max", 310),
-                    {{"type", "motion"}, {"nodes", "bar.z_max"}, {"velocity", {0.1, 0, 0}}}};
-  scene["interfaces"] = {{{"law", "coulomb"},
-                          {"nodes", "bar.z_min"},
-                          {"parameters", {{"friction", 0.3}, {"heat_partition", 0.25}}},
-                          {"obstacle", {{"type", "plane"}, {"point", {0, 0, 0}}, {"normal", {0, 0, 1}}}}}};
-  return scene;
-}
-
-TEST(Thermal, ResumesToTheSameBits) {
-  const std::string text = drawn_block({.elements = 3}, 0.01).dump();
-  Scene one = scene_of(text), other = scene_of(text);
-  Integrator whole = integrator_of(one), rest = integrator_of(other);
-  run(whole, 40);
-  std::stringstream saved;
-  whole.save(saved);
-  rest.load(saved);
-  run(whole, 30);
-  run(rest, 30);
-  EXPECT_EQ(temperatures_of(whole, one), temperatures_of(rest, other));
-  const HeatReport of_whole = whole.temperatures()->report(), of_rest = rest.temperatures()->report();
-  for (const auto sum :
-       {&HeatReport::stored, &HeatReport::obstacles, &HeatReport::friction, &HeatReport::supplied}) {
-    EXPECT_NE(of_whole.*sum, 0.0);
-    EXPECT_EQ(of_whole.*sum, of_rest.*sum);
-  }
-  EXPECT_LT(of_whole.balance_error, 1e-12);
-  EXPECT_EQ(of_whole.balance_error, of_rest.balance_error);
-}
-
 // The block of docs/results/tyre_block.md.
 TEST(Thermal, HeatsTheShippedTyreBlock) {
   json scene = read_scene_source(scene_files::named("tyre_block.json"));

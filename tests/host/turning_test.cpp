@@ -71,27 +71,6 @@ TEST(TurningObstacle, GivesAnImpactItsSpin) {
       }
 }
 
-// The same where contacts share nodes, which takes another path through the program.
-TEST(TurningObstacle, IsTheSameForContactsThatShareNodes) {
-  for (const std::string type : {"disc", "sphere", "table"}) {
-    GIVEN(type);
-    const int d = type == "disc" ? 2 : 3;
-    json source = dropped(wheel(type, 0.6), d, 0.3, 0.5);
-    source["time"]["dt"] = 0.01;
-    Scene alone = scene_of(source);
-    json far = {{"type", "plane"}, {"point", {0, -100}}, {"normal", {0, 1}}};
-    if (d == 3) far = {{"type", "plane"}, {"point", {0, -100, 0}}, {"normal", {0, 1, 0}}};
-    source["interfaces"].push_back(source["interfaces"][0]);
-    source["interfaces"][1]["obstacle"] = far;
-    Scene shared = scene_of(source);
-    const Integrator one = after_impact(alone), other = after_impact(shared);
-    EXPECT_LT((one.velocity() - other.velocity()).cwiseAbs().maxCoeff(), 1e-14);
-    EXPECT_NEAR(other.energy().reaction_work, 0.0, 1e-13);
-    EXPECT_NEAR(one.energy().by_law[ILAW_ENERGY_FRICTION], other.energy().by_law[ILAW_ENERGY_FRICTION],
-                1e-13);
-  }
-}
-
 // A wheel that rolls has no velocity where it touches the ground: what it meets there is not
 // dragged along. It touches at a time of 0.5; met s later, its normal is (-4 s, -1) and its
 // surface, where it touches, has the velocity (16 s^2, 8 s) as it rolls, (2, 0) as it slides, (4,
@@ -242,9 +221,6 @@ json on_spinning_sphere(const json& interface, const json& gravity) {
   scene["interfaces"][0].update(interface);
   return scene;
 }
-const json out_of_reach = json::parse(
-    R"({"law": "contact", "nodes": "all", "obstacle": {"type": "plane", "point": [0, 0, -100], "normal": [0, 0, 1]}})");
-
 // Laws of the tree that remember vectors, with the parameters of their tests, and two stiff bonds.
 std::vector<json> laws_that_remember_vectors() {
   std::vector<json> laws = {
@@ -256,33 +232,6 @@ std::vector<json> laws_that_remember_vectors() {
       for (const json& entry : json::parse(file).value("frame", json::array()))
         laws.push_back({{"law", folder.path().filename()}, {"parameters", entry["parameters"]}});
   return laws;
-}
-
-TEST(TurningObstacle, TurnsMemoryOncePerStep) {
-  const std::vector<json> laws = laws_that_remember_vectors();
-  EXPECT_GT(laws.size(), 6U);
-  Random random(7);
-  for (const json& law : laws)
-    for (int k = 0; k < 5; ++k) {
-      const json gravity = {3.0 * random(), 3.0 * random(), -random(0.1, 30.0)};
-      GIVEN(law["law"], gravity.dump());
-      json source = on_spinning_sphere(law, gravity);
-      auto [alone, plain] = simulation_of(source);
-      source["interfaces"].push_back(out_of_reach);
-      auto [shared, coupled] = simulation_of(source);
-      coupled.set_tolerance(1e-14);
-      for (double fastest = 1.0; plain.steps() < alone.steps;) {
-        plain.step();
-        coupled.step();
-        fastest = std::max(fastest, plain.velocity().norm());
-        ASSERT_LT((plain.velocity() - coupled.velocity()).norm(), 1e-11 * fastest) << plain.time();
-        for (int entry = 0; entry < static_cast<int>(alone.interfaces[0]->info().state_size); ++entry) {
-          const double state = alone.interfaces[0]->state_at(0, plain.displacement())[entry];
-          ASSERT_NEAR(shared.interfaces[0]->state_at(0, coupled.displacement())[entry], state,
-                      1e-11 * std::max(1.0, std::abs(state)));
-        }
-      }
-    }
 }
 
 // From time 0.5 on the second point is driven against a rigid floor, which ends the run.

@@ -128,9 +128,8 @@ void Interface::solve(const StepView& step, Dofs& v) {
     sums_ = {};
     return;
   }
-  const bool energies = (asks_energies_ || heat_) && (law_.outputs() & ILAW_OUTPUT_ENERGY) != 0;
-  const BlockStep blocks{setup_, model_, inverse_mass_, law_,  contacts_, step, obstacle_,
-                         axes_,  v,      energies,      heat()};
+  const BlockStep blocks{setup_, model_, inverse_mass_,    law_,  contacts_, step, obstacle_,
+                         axes_,  v,      gives_energies(), heat()};
   const auto step_chunk = steps_plainly_ ? plain_step : solve_chunk;
   outcomes_.resize(static_cast<std::size_t>(search_.chunk_count()));
   for_each_chunk(search_.chunk_count(), 1, [&](std::ptrdiff_t c, auto, auto) {

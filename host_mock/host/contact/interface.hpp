@@ -20,6 +20,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ilaw::host {
@@ -32,6 +33,8 @@ class Interface {
 
   const std::string& name() const { return setup_.name; }
   const InterfaceSetup& setup() const { return setup_; }
+  // For another interface in the place of this one, which is of no use then.
+  InterfaceSetup take_setup() { return std::move(setup_); }
   const ilaw::library& library() const { return law_.library(); }
   const ilaw_instance_info& info() const { return law_.info(); }
   const std::vector<int>& nodes() const { return setup_.nodes; }
@@ -98,6 +101,14 @@ class Interface {
   // -1: none yet. Watching makes none: contacts then have the order of their nodes, which blocks need to
   // work on them where they are.
   int contact_at(int node_index) const { return contacts_.index_of(at(node_index)); }
+  // Values of the law's parameters per node, as the scene gives them and as the contact last had them.
+  std::vector<double> parameters_of(int node_index) const;
+  std::vector<double> parameters_at(int contact_index) const;
+  // Where axes begin in the state.
+  const std::vector<std::size_t>& axes() const { return axes_; }
+  bool gives_energies() const {
+    return (asks_energies_ || heat_) && (law_.outputs() & ILAW_OUTPUT_ENERGY) != 0;
+  }
   // The accepted state, without making a contact.
   std::vector<double> state_at(int node_index, const Dofs& u) const;
   std::size_t bytes_per_contact() const { return contacts_.bytes_per_contact(); }
@@ -113,7 +124,6 @@ class Interface {
   void find_delassus(std::size_t contact);
   void choose_active(const StepView& step);
   void total_amounts();
-  std::vector<double> parameters_of(int node_index) const;
   std::vector<double> first_state(int node_index, const Dofs& u) const;
   // Throws what a law refused; node: the first, empty where it is none in particular.
   void check(const Refusal& refusal, double dt) const;

@@ -31,6 +31,13 @@ std::vector<double> Interface::parameters_of(int node_index) const {
   return parameters;
 }
 
+std::vector<double> Interface::parameters_at(int contact_index) const {
+  std::vector<double> parameters;
+  for (const std::vector<double>& values : contacts_.parameters)
+    parameters.push_back(values[at(contact_index)]);
+  return parameters;
+}
+
 // The state that the law starts with at time 0, whenever the contact is made. Its axes are those of
 // the first time that it is active: where the normal turns, a law whose state has axes is active
 // from the first step (may_skip).

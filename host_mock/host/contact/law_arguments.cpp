@@ -87,6 +87,9 @@ ilaw::interface create_law(const std::string& law, const Arguments& from_scene, 
   const Arguments given = with_fields(from_scene, library.law(law));
   ilaw::parameters parameters = parameters_of(given, {});
   parameters.give(setup);
+  std::vector<const ilaw_argument*> order(setup.arguments, setup.arguments + setup.argument_count);
+  if (given.is_reversed) std::reverse(order.begin(), order.end());
+  setup.arguments = order.data();
   std::optional<std::size_t> node_index;
   try {
     ilaw::interface created(library, law, setup);

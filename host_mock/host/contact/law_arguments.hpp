@@ -30,6 +30,7 @@ struct Arguments {
   // Fields of the model at the interface's nodes. A law that has a field parameter of such a name gets it per
   // node, unless the scene gives the parameter.
   std::map<std::string, std::vector<double>> fields;
+  bool is_reversed = false;  // the order in which the law is given them, which must change nothing
 
   bool gives(const std::string& name) const {
     return numbers.contains(name) || texts.contains(name) || tables.contains(name) || per_node.contains(name);

@@ -50,7 +50,7 @@ struct WildMotion {
 
 void Integrator::step() {
   start();
-  const StepTimes times{time(), static_cast<double>(steps_ + 1) * dt_};
+  const StepTimes times{time(), time_of(steps_ + 1)};
   Laps laps(timed_steps());
   has_begun_step_ = true;
   v_before_.swap(v_);       // v is written anew from here on

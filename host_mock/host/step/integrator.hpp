@@ -36,9 +36,9 @@ struct PhaseSeconds {
 class Integrator {
  public:
   // With a prestress the start finds the static equilibrium first. Throws std::runtime_error where it is not
-  // found.
+  // found. begin: the time of the start.
   Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt,
-             std::optional<PrestressSetup> prestress = {});
+             std::optional<PrestressSetup> prestress = {}, double begin = 0.0);
 
   // Residual to which coupled contacts are solved. A run that goes on from a checkpoint keeps the one it had.
   void set_tolerance(double tolerance);
@@ -55,7 +55,7 @@ class Integrator {
   void take_back_step();
 
   std::int64_t steps() const { return steps_; }
-  double time() const { return static_cast<double>(steps_) * dt_; }
+  double time() const { return time_of(steps_); }
   const Dofs& displacement() const { return u_; }  // at time()
   const Dofs& velocity() const { return v_; }      // at the half step after time()
   // At the half step before time(), once a step has been made.
@@ -103,7 +103,8 @@ class Integrator {
   void find_contact_mass(StepTimes step);
   void add_load_reactions(StepTimes step);
   Dofs force_at_start() const;
-  StepTimes start_times() const { return {-0.5 * dt_, 0.0, dt_}; }
+  double time_of(std::int64_t step) const { return begin_ + static_cast<double>(step) * dt_; }
+  StepTimes start_times() const { return {begin_ - 0.5 * dt_, begin_, begin_ + dt_}; }
   void add_start_kick();
   void settle(const std::function<void(const PrestressReport&)>& told);
   void relax(StepTimes times, bool from_rest);
@@ -124,7 +125,7 @@ class Integrator {
   Interfaces& interfaces_;
   std::optional<CoupledStep> coupled_;  // where contacts share nodes
   std::optional<Temperatures> temperatures_;
-  double dt_;
+  double dt_, begin_;
   std::optional<PrestressSetup> prestress_;
   std::optional<PrestressReport> prestressed_;
   bool was_held_ = true;         // obstacles stood still in the last step of the prestress

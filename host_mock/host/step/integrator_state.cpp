@@ -27,11 +27,12 @@ std::vector<std::size_t> order_of_corrections(const Loads& loads) {
 }  // namespace
 
 Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt,
-                       std::optional<PrestressSetup> prestress)
+                       std::optional<PrestressSetup> prestress, double begin)
     : model_(model),
       loads_(loads),
       interfaces_(interfaces),
       dt_(dt),
+      begin_(begin),
       prestress_(prestress),
       loads_are_steady_(
           std::all_of(loads.begin(), loads.end(), [](const auto& load) { return load->is_steady(); })),
@@ -66,7 +67,7 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
 
 Dofs Integrator::force_at_start() const {
   Dofs force = Dofs::Zero(u_.size());
-  for (const auto& load : loads_) load->add_force(0.0, u_, force);
+  for (const auto& load : loads_) load->add_force(begin_, u_, force);
   return force;
 }
 
@@ -109,13 +110,13 @@ void Integrator::start(const std::function<void(const PrestressReport&)>& told) 
   hold_driven_before();
   find_contact_mass(start_times());
   try {
-    add_reactions({u_, v_before_, 0.0, dt_, largest_speed(v_before_, d), speed_before_, 0});
+    add_reactions({u_, v_before_, begin_, dt_, largest_speed(v_before_, d), speed_before_, 0});
   } catch (...) {
     v_ = v_free;
     throw;
   }
   if (contact_inverse_mass_.size() > 0) add_load_reactions(start_times());
-  find_contact_mass({0.0, dt_});
+  find_contact_mass({begin_, begin_ + dt_});
   if (temperatures_) take_heat();
   speed_before_ = largest_speed(v_, d);
   accounts_.start(model_, u_, u_ + dt_ * v_, v_);
@@ -143,7 +144,7 @@ void Integrator::add_load_impulse(std::size_t load, Dofs& impulse) const {
   Dofs force = Dofs::Zero(u_.size());
   loads_[load]->add_force(time(), u_, force);
   impulse += (steps_ == 0 ? 0.5 * dt_ : dt_) * force;
-  if (steps_ > 0) loads_[load]->add_impulse({static_cast<double>(steps_ - 1) * dt_, time()}, impulse);
+  if (steps_ > 0) loads_[load]->add_impulse({time_of(steps_ - 1), time()}, impulse);
 }
 
 void Integrator::set_tolerance(double tolerance) {
@@ -165,7 +166,7 @@ void Integrator::load(std::istream& in) {
   read_value(in, has_started_);
   for (Dofs* dofs : {&u_, &v_}) read_array(in, dofs->data(), static_cast<std::size_t>(dofs->size()));
   accounts_.load(in);
-  if (has_started_ && !interfaces_.empty()) find_contact_mass({0.0, dt_});
+  if (has_started_ && !interfaces_.empty()) find_contact_mass({begin_, begin_ + dt_});
   speed_before_ = largest_speed(v_, model_.dimension());
   for (const auto& interface : interfaces_) interface->load(in, u_);
   if (coupled_) coupled_->load(in, u_);

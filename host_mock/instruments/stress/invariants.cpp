@@ -5,18 +5,13 @@
 #include "base/words.hpp"
 #include "scene/validation.hpp"
 #include "stress/ledger.hpp"
-
-#include <omp.h>
+#include "stress/relations.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <exception>
 #include <optional>
-#include <sstream>
 
 namespace ilaw::host {
 namespace {
@@ -27,66 +22,18 @@ using nlohmann::json;
 // a thousand times as long as another.
 constexpr std::int64_t most_unsolved = 20;
 
+// Steps of a scene beside others that are related to it.
+constexpr std::int64_t most_related_steps = 200;
+
 constexpr const char* scene_name = "stress.json";
-
-// Results that must be the same to the bit. Energies are sums over active contacts, in their order: they are
-// left out where other contacts are active.
-struct Bits {
-  Dofs u, v;
-  std::array<double, 3> energies;
-
-  explicit Bits(const Integrator& integrator) : u(integrator.displacement()), v(integrator.velocity()) {
-    const EnergyReport energy = integrator.energy();
-    energies = {energy.interface_work, energy.reaction_work, energy.by_law[ILAW_ENERGY_FRICTION]};
-  }
-};
-
-bool same(const Dofs& a, const Dofs& b) {
-  return std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
-}
 
 struct Run {
   explicit Run(const json& source)
       : scene(read_scene(source, scene_name)),
         integrator(*scene.model, scene.loads, scene.interfaces, scene.dt) {}
-  void advance(std::int64_t steps) {
-    while (integrator.steps() < steps) integrator.step();
-  }
   Scene scene;
   Integrator integrator;
 };
-
-json without_skip(json source) {
-  for (json& interface : source["interfaces"]) interface["skip"] = false;
-  return source;
-}
-
-// The name of the way in which a run to the same step ends with other bits; empty: none does.
-std::string other_bits(const json& source, std::int64_t steps, const Bits& expected) {
-  using Words = std::array<std::uint64_t, 3>;  // NaN is compared, too
-  const auto differs = [&](const Run& run, bool with_energies) {
-    const Bits found(run.integrator);
-    return !same(found.u, expected.u) || !same(found.v, expected.v) ||
-           (with_energies && std::bit_cast<Words>(found.energies) != std::bit_cast<Words>(expected.energies));
-  };
-  omp_set_num_threads(2);
-  Run threaded(source);
-  threaded.advance(steps);
-  omp_set_num_threads(1);
-  if (differs(threaded, true)) return "with two threads";
-
-  Run all(without_skip(source));
-  all.advance(steps);
-  if (differs(all, false)) return "without skipping";
-
-  Run first(source), second(source);
-  first.advance(steps / 2);
-  std::stringstream checkpoint;
-  first.integrator.save(checkpoint);
-  second.integrator.load(checkpoint);
-  second.advance(steps);
-  return differs(second, true) ? "resumed from a checkpoint" : "";
-}
 
 // Where a run may have to stop: it says of contacts that share nodes that no solution was found, explicit
 // springs and large deformations have steps of their own, and a law may say that a step has no one solution.
@@ -131,9 +78,7 @@ class Judge {
   void advance() {
     Integrator& integrator = run_->integrator;
     Ledger ledger(run_->scene);
-    const std::int64_t steps = run_->scene.steps,
-                       prefix = std::max<std::int64_t>(1, std::min<std::int64_t>(steps / 8, 2000));
-    std::optional<Bits> bits;
+    const std::int64_t steps = run_->scene.steps;
     ledger.open(integrator);
     integrator.start();
     ledger.close(integrator);
@@ -143,12 +88,12 @@ class Judge {
       ledger.close(integrator);
       if (integrator.tally().unconverged > most_unsolved)
         return end(StressEnding::stopped, "", "contacts that share nodes are not solved in many steps");
-      if (integrator.steps() == prefix) bits.emplace(integrator);
     }
     compare(ledger);
     if (verdict_.ending != StressEnding::passed) return;
-    if (const std::string how = other_bits(source_, prefix, *bits); !how.empty())
-      end(StressEnding::failed, "bits", "other bits " + how);
+    const RelationReport report =
+        check_relations(source_, scene_name, std::clamp<std::int64_t>(steps / 8, 1, most_related_steps));
+    if (!report.broken.empty()) end(StressEnding::failed, "relations", report.broken.front());
   }
 
   // A figure against its bound.

@@ -38,8 +38,8 @@ struct StressVerdict {
   StressFigures figures;
 };
 
-// Runs a scene and, over a part of its steps, once more with two threads, without skipping, and
-// resumed from a checkpoint. Sets the number of threads.
+// Runs a scene and, over a part of its steps, the scenes that are related to it (relations.hpp). Sets the
+// number of threads.
 StressVerdict stress_scene(const nlohmann::json& source);
 
 }  // namespace ilaw::host

@@ -166,39 +166,6 @@ TEST(CohesiveProperties, LimitsAreTieAndCoulomb) {
   }
 }
 
-// The same motion in other units of mass, length and time, powers of two: the same bits. A mirror image is
-// one.
-TEST(CohesiveProperties, AreTheSameInOtherUnitsAndMirrored) {
-  Draw draw(14);
-  constexpr double mass = 0x1p+20, meter = 0x1p-12, second = 0x1p+7;
-  constexpr double pressure = mass / (meter * second * second);
-  for (int bond = 0; bond < 200; ++bond) {
-    const Parameters p = draw.bond();
-    Parameters q = p;
-    for (auto& [name, value] : q.numbers) {
-      if (name.starts_with("strength")) value *= pressure;
-      if (name.starts_with("toughness")) value *= pressure * meter;
-      if (name == "stiffness") value *= pressure / meter;
-      if (name == "delay_time") value *= second;
-    }
-    Hung a(p, 0.05), b(q, 0.05 * second, mass), mirror(p, 0.05);
-    b.area *= meter * meter;
-    for (int k = 0; k < 100; ++k) {
-      const Vector f = draw.vector(3.0);
-      constexpr double unit = mass * meter / (second * second);
-      a.push(f);
-      b.push({unit * f[0], unit * f[1], unit * f[2]});
-      mirror.push({f[0], f[1], -f[2]});
-      ASSERT_EQ(a.named("damage"), b.named("damage"));
-      ASSERT_EQ(a.named("damage"), mirror.named("damage"));
-      for (std::size_t c = 0; c < 3; ++c) {
-        ASSERT_EQ(a.r[c] * mass * meter / second, b.r[c]);
-        ASSERT_EQ(a.r[c], (c == 2 ? -1.0 : 1.0) * mirror.r[c]);
-      }
-    }
-  }
-}
-
 // In the host's axes, with a normal that turns by the shortest rotation and no tangent given: what the bond
 // remembers turns with it, and the impulse is that of the local frame, turned.
 TEST(CohesiveProperties, RememberedSlipTurnsWithTheNormal) {

@@ -236,33 +236,6 @@ TEST(Penalty, ExplicitReadsWhatIsKnownBefore) {
   }
 }
 
-// A stiffness given per node takes another way through the kit: the same bits.
-TEST(Penalty, PerNodeStiffnessGivesTheSameBits) {
-  Random random(4);
-  for (const char* integration : {"explicit", "implicit"})
-    for (const double exponent : {1.0, 1.5}) {
-      const Parameters constant = with(
-          integration,
-          {{"stiffness", 3e3}, {"exponent", exponent}, {"friction", 0.3}, {"tangential_stiffness", 1e3}});
-      Parameters per_node = constant;
-      per_node.numbers.erase("stiffness");
-      per_node.per_node = {"stiffness"};
-      NodeRun node("penalty", constant);
-      LawBatch varying(make_law("penalty", SetupBuilder(per_node)));
-      const double stiffness = 3e3;
-      varying.per_node = {ilaw::input(&stiffness, 0, 0)};
-      for (int k = 0; k < 1000; ++k) {
-        varying.v_free[0] = random.vector();
-        varying.v_previous[0] = node.v_previous;
-        varying.gap[0] = node.gap = 1e-3 * random() - 5e-4;
-        ASSERT_EQ(node.step(varying.v_free[0]), ILAW_OK);
-        ASSERT_EQ(varying.evaluate(), ILAW_OK);
-        ASSERT_EQ(varying.r[0], node.r);
-        ASSERT_EQ(varying.state, node.state);
-      }
-    }
-}
-
 // Up to a million random steps of nodes with memory: r_N pushes, |r_T| <= mu r_N, a power of ten in stiffness
 // at a time; no energy counts as negative.
 TEST(Penalty, RandomHistoriesKeepTheCone) {

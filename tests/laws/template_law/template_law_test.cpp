@@ -71,19 +71,5 @@ TEST(template_law, NeverPullsAndNeedsAClosedGapAndAnArea) {
   EXPECT_EQ(impulse(0.0, 1.0, 1.0), 0.0);
 }
 
-// The same impulse, turned, in axes that are turned at random.
-TEST(template_law, IsIndifferentToTheFrame) {
-  RandomNodes nodes(1000, 3, ILAW_DELASSUS_FULL, Inertia::any, 2);
-  const Parameters parameters{{{"damping", 500.0}}, {}};
-  Runner local("template_law", parameters, nodes), turned("template_law", parameters, nodes, Axes::host);
-  nodes.draw();
-  ASSERT_EQ(local.evaluate(), ILAW_OK) << local.report.reason;
-  ASSERT_EQ(turned.evaluate(), ILAW_OK) << turned.report.reason;
-  for (std::size_t i = 0; i < nodes.count; ++i) {
-    const Vector r = turned.local(i, turned.r[i], 1.0);
-    ASSERT_THAT(r, VectorNear(local.r[i], 1e-13 * (1.0 + local.r[i][0]))) << "node " << i << ", seed 2";
-  }
-}
-
 }  // namespace
 }  // namespace ilaw::testing

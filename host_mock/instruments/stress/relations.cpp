@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stress/relations.hpp"
+
+#include "base/scene_error.hpp"
+#include "base/words.hpp"
+#include "step/dof_loops.hpp"
+#include "stress/related_scenes.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <thread>
+#include <utility>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+constexpr double tolerance = 1e-13;       // of coupled contacts, so that a motion is known well
+constexpr double least_bound = 1e-9;      // of differences, in the scale of the motion
+constexpr double growth_of_nudges = 1e5;  // a difference may be so much larger than one rounding makes it
+constexpr double vague_bound = 0.1;       // beyond, a relation says nothing
+constexpr int sample_count = 8;
+
+struct RelatedRun {
+  RelatedRun(const json& source, const std::filesystem::path& file, double begin = 0.0)
+      : RelatedRun(read_scene(source, file), begin) {}
+  explicit RelatedRun(Scene read, double begin = 0.0)
+      : scene(std::move(read)),
+        integrator(*scene.model, scene.loads, scene.interfaces, scene.dt, scene.prestress, begin) {
+    integrator.set_tolerance(tolerance);
+  }
+  void advance(std::int64_t steps) {
+    integrator.start();
+    while (integrator.steps() < steps) integrator.step();
+  }
+  std::string state() const {
+    std::ostringstream out;
+    integrator.save(out);
+    return out.str();
+  }
+  Scene scene;
+  Integrator integrator;
+};
+
+// A motion at some instants, and the largest displacement and velocity that it has on the way. Impulses that
+// cancel are rounded, too.
+struct Motion {
+  std::vector<Dofs> u, v;
+  double displacement = 0.0, velocity = 0.0, farthest = 0.0;
+  bool is_solved = true;  // all steps, as the solver of coupled contacts says
+
+  void note(const RelatedRun& run) {
+    const Integrator& integrator = run.integrator;
+    const Dofs& mass = run.scene.model->mass();
+    const Dofs change = integrator.interface_impulse().cwiseQuotient(mass);
+    velocity = std::max({velocity, integrator.velocity().cwiseAbs().maxCoeff(), change.cwiseAbs().maxCoeff(),
+                         (integrator.velocity() - change).cwiseAbs().maxCoeff()});
+    displacement =
+        std::max({displacement, integrator.displacement().cwiseAbs().maxCoeff(), velocity * run.scene.dt});
+  }
+};
+
+Motion motion_of(RelatedRun& run, std::int64_t steps) {
+  Motion motion;
+  motion.farthest = run.scene.model->position().cwiseAbs().maxCoeff();
+  run.integrator.start();
+  motion.note(run);
+  for (int sample = 1; sample <= sample_count; ++sample) {
+    while (run.integrator.steps() < steps * sample / sample_count) {
+      run.integrator.step();
+      motion.note(run);
+    }
+    motion.u.push_back(run.integrator.displacement());
+    motion.v.push_back(run.integrator.velocity());
+  }
+  motion.is_solved = run.integrator.tally().unconverged == 0;
+  return motion;
+}
+
+// The largest difference of two motions, in the scale of the first, and where it is.
+struct Difference {
+  double size = 0.0;
+  std::string where;
+};
+
+class Comparison {
+ public:
+  Comparison(const Motion& motion, const Scene& scene, const RelatedScene& related)
+      : motion_(motion), d_(scene.model->dimension()), related_(related) {
+    // Gaps are differences of coordinates; a law that closes one moves by their rounding.
+    const double rounded =
+        64.0 * std::numeric_limits<double>::epsilon() * (motion.farthest + related.farthest) / least_bound;
+    displacement_ = std::max(motion.displacement, rounded);
+    velocity_ = std::max(motion.velocity, rounded / scene.dt);
+  }
+
+  Difference with(const Motion& other) const {
+    Difference largest;
+    const auto compare = [&](const std::vector<Dofs>& ours, const std::vector<Dofs>& theirs, double scale,
+                             double unit, const char* name) {
+      for (std::size_t sample = 0; sample < ours.size(); ++sample)
+        for (Eigen::Index i = 0; i < ours[sample].size(); ++i)
+          for (const std::vector<int>& image : related_.nodes) {
+            const double off = std::abs(ours[sample][i] - seen(theirs[sample], i, image) / unit) / scale;
+            if (off <= largest.size) continue;
+            largest = {off, formatted("%s%d of node %d, sample %zu of %d", name, static_cast<int>(i % d_),
+                                      static_cast<int>(i / d_), sample + 1, sample_count)};
+          }
+    };
+    if (displacement_ > 0.0) compare(motion_.u, other.u, displacement_, related_.length, "u");
+    if (velocity_ > 0.0) compare(motion_.v, other.v, velocity_, related_.length / related_.time, "v");
+    return largest;
+  }
+
+ private:
+  double seen(const Dofs& theirs, Eigen::Index dof, const std::vector<int>& image) const {
+    const auto c = static_cast<std::size_t>(dof % d_);
+    const Eigen::Index node = dof / d_, there = image.empty() ? node : image[static_cast<std::size_t>(node)];
+    return related_.sign[c] * theirs[there * d_ + related_.axis[c]];
+  }
+
+  const Motion& motion_;
+  const Eigen::Index d_;
+  const RelatedScene& related_;
+  double displacement_, velocity_;
+};
+
+class Check {
+ public:
+  Check(const json& source, const std::filesystem::path& file, std::int64_t steps)
+      : source_(source), file_(file), run_(source, file) {
+    omp_set_num_threads(1);
+    steps_ = std::min(steps, run_.scene.steps);
+    motion_ = motion_of(run_, steps_);
+    state_ = run_.state();
+  }
+
+  RelationReport report() {
+    for_bits();
+    const double rounded = effect_of(nudged(source_, 0.0)),
+                 moved = effect_of(nudged(source_, motion_.farthest));
+    for (const Relation& relation : relations())
+      compare(relation, relation.rounds_places ? std::max(rounded, moved) : rounded);
+    return report_;
+  }
+
+ private:
+  void fail(const std::string& name, const std::string& how) { report_.broken.push_back(name + ": " + how); }
+
+  // What a run of the same scene in another way must give to the bit.
+  void same_bits(const char* name, const std::function<std::string()>& other, const std::string& expected) {
+    try {
+      if (other() != expected) return fail(name, "the bits are others");
+    } catch (const std::exception& stop) {
+      return fail(name, std::string("stops: ") + stop.what());
+    }
+    ++report_.held[name];
+  }
+
+  std::string state_of_a_run(const std::function<void(Scene&)>& change = {}) const {
+    Scene scene = read_scene(source_, file_);
+    if (change) change(scene);
+    RelatedRun run(std::move(scene));
+    run.advance(steps_);
+    return run.state();
+  }
+
+  void for_bits() {
+    same_bits(
+        "with two threads", [&] { return on_two_threads(); }, state_);
+    same_bits(
+        "beside itself", [&] { return beside_itself(); }, state_ + state_);
+    same_bits(
+        "resumed", [&] { return resumed(); }, bits_of(run_) + energies_of(run_));
+    same_bits(
+        "with plain steps",
+        [&] {
+          return state_of_a_run([](Scene& scene) {
+            for (const auto& interface : scene.interfaces) interface->step_plainly();
+          });
+        },
+        state_);
+    // Sums of energies run over other contacts.
+    same_bits(
+        "without skipping", [&] { return without_skip(); }, bits_of(run_));
+    if (!source_.contains("fields"))
+      same_bits(
+          "with parameters in reverse order", [&] { return permuted(); }, state_);
+  }
+
+  static std::string bits_of(const RelatedRun& run) {
+    std::string bits;
+    for (const Dofs* dofs : {&run.integrator.displacement(), &run.integrator.velocity()})
+      bits.append(reinterpret_cast<const char*>(dofs->data()),
+                  sizeof(double) * static_cast<std::size_t>(dofs->size()));
+    const Temperatures* const temperatures = run.integrator.temperatures();
+    for (int node = 0; temperatures && node < run.scene.model->node_count(); ++node) {
+      const double temperature = temperatures->at(node);
+      bits.append(reinterpret_cast<const char*>(&temperature), sizeof temperature);
+    }
+    return bits;
+  }
+
+  static std::string energies_of(const RelatedRun& run) {
+    const EnergyReport energy = run.integrator.energy();
+    const std::array<double, 3> values = {energy.interface_work, energy.reaction_work,
+                                          energy.by_law[ILAW_ENERGY_FRICTION]};
+    return {reinterpret_cast<const char*>(values.data()), sizeof values};
+  }
+
+  std::string on_two_threads() const {
+    omp_set_num_threads(2);
+    std::string state;
+    try {
+      state = state_of_a_run();
+    } catch (...) {
+      omp_set_num_threads(1);
+      throw;
+    }
+    omp_set_num_threads(1);
+    return state;
+  }
+
+  std::string resumed() const {
+    RelatedRun first(source_, file_), second(source_, file_);
+    first.advance(steps_ / 2);
+    std::stringstream checkpoint;
+    first.integrator.save(checkpoint);
+    second.integrator.load(checkpoint);
+    second.advance(steps_);
+    return bits_of(second) + energies_of(second);
+  }
+
+  // Several scenes at once in one process. Readers of meshes start processes, which threads must not do.
+  std::string beside_itself() const {
+    std::array<std::optional<RelatedRun>, 2> runs;
+    for (auto& run : runs) run.emplace(source_, file_);
+    std::array<std::exception_ptr, 2> stops;
+    std::array<std::thread, 2> threads;
+    for (std::size_t k = 0; k < runs.size(); ++k)
+      threads[k] = std::thread([&, k] {
+        omp_set_num_threads(1);
+        try {
+          runs[k]->advance(steps_);
+        } catch (...) {
+          stops[k] = std::current_exception();
+        }
+      });
+    for (std::thread& thread : threads) thread.join();
+    for (const std::exception_ptr& stop : stops)
+      if (stop) std::rethrow_exception(stop);
+    return runs[0]->state() + runs[1]->state();
+  }
+
+  std::string without_skip() const {
+    json all = source_;
+    for (json& interface : all["interfaces"]) interface["skip"] = false;
+    RelatedRun run(all, file_);
+    run.advance(steps_);
+    return bits_of(run);
+  }
+
+  std::string permuted() const {
+    return state_of_a_run([](Scene& scene) {
+      for (auto& interface : scene.interfaces) {
+        InterfaceSetup setup = interface->take_setup();
+        setup.arguments.is_reversed = true;
+        interface = std::make_unique<Interface>(std::move(setup), *scene.model);
+      }
+    });
+  }
+
+  double effect_of(const json& nudged_source) const {
+    try {
+      RelatedRun twin(nudged_source, file_);
+      return Comparison(motion_, run_.scene, RelatedScene{}).with(motion_of(twin, steps_)).size;
+    } catch (const std::exception&) {
+      return std::numeric_limits<double>::infinity();
+    }
+  }
+
+  void compare(const Relation& relation, double nudge) {
+    const std::optional<RelatedScene> related = relation.make(source_, run_.scene);
+    if (!related) return;
+    const double bound = std::max(least_bound, growth_of_nudges * nudge);
+    if (!(bound < vague_bound) || !motion_.is_solved) {
+      ++report_.vague;
+      return;
+    }
+    try {
+      RelatedRun other(related->source, file_, related->begin);
+      const Motion motion = motion_of(other, steps_);
+      if (!motion.is_solved) {
+        ++report_.vague;
+        return;
+      }
+      const Difference difference = Comparison(motion_, run_.scene, *related).with(motion);
+      report_.worst = std::max(report_.worst, difference.size / bound);
+      if (!(difference.size <= bound))
+        return fail(relation.name, formatted("%s differs by %.2g, expected at most %.2g",
+                                             difference.where.c_str(), difference.size, bound));
+    } catch (const SceneError& refusal) {
+      return fail(relation.name, std::string("is refused: ") + refusal.what());
+    } catch (const std::exception& stop) {
+      return fail(relation.name, std::string("stops: ") + stop.what());
+    }
+    ++report_.held[relation.name];
+  }
+
+  const json& source_;
+  const std::filesystem::path& file_;
+  RelatedRun run_;
+  std::int64_t steps_ = 0;
+  Motion motion_;
+  std::string state_;
+  RelationReport report_;
+};
+
+}  // namespace
+
+RelationReport check_relations(const json& source, const std::filesystem::path& file, std::int64_t steps) {
+  return Check(source, file, steps).report();
+}
+
+}  // namespace ilaw::host

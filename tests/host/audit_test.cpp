@@ -1,0 +1,90 @@
+// `ilaw run --audit`: shipped scenes pass it, and each planted fault is found by step, node and quantity.
+#include "host_runner.hpp"
+
+#include "audit/audit.hpp"
+
+namespace ilaw::host::testing {
+namespace {
+
+void run_audited(Scene& scene, const Scene& as, std::int64_t steps) {
+  Integrator integrator = integrator_of(scene);
+  integrator.start();
+  Audit audit(as, integrator);
+  while (integrator.steps() < std::min(scene.steps, steps)) {
+    audit.open();
+    integrator.step();
+    audit.close();
+  }
+}
+
+class Audited : public ::testing::TestWithParam<fs::path> {};
+
+TEST_P(Audited, PassesForAShippedScene) {
+  Scene scene = read_scene(GetParam());
+  EXPECT_NO_THROW(run_audited(scene, scene, 500));
+}
+INSTANTIATE_TEST_SUITE_P(Host, Audited, ::testing::ValuesIn(scene_files::all()),
+                         [](const auto& drawn) { return drawn.param.stem().string(); });
+
+json resting(const char* law) {
+  json scene = json::parse(R"({"model": {"type": "points", "dimension": 1, "points": [
+      {"mass": 2, "position": [1]}, {"mass": 2, "position": [0], "velocity": [-0.1]}]},
+      "time": {"dt": 1, "end": 5}, "loads": [{"type": "gravity", "acceleration": [-0.001]}],
+      "interfaces": [{"name": "floor", "nodes": [1],
+                      "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})");
+  scene["interfaces"][0]["law"] = law;
+  if (law == std::string("broken")) scene["interfaces"][0]["library"] = ILAW_BROKEN_LAW;
+  return scene;
+}
+
+struct Planted {
+  const char *broken, *found;
+};
+std::ostream& operator<<(std::ostream& out, const Planted& one) { return out << one.broken; }
+
+class AuditFinds : public ::testing::TestWithParam<Planted> {};
+
+TEST_P(AuditFinds, WhatALawDoesWrong) {
+  const std::string setting = std::string("ILAW_BROKEN=") + GetParam().broken + " ";
+  EXPECT_THAT(run_scene(resting("broken"), fresh_folder(), "--audit", setting),
+              Exits(1, AllOf(HasSubstr("audit: step 3, time 3: "), HasSubstr(GetParam().found))));
+}
+INSTANTIATE_TEST_SUITE_P(
+    Host, AuditFinds,
+    ::testing::Values(Planted{"other_answer", "node 1, interface 'floor' (law 'broken'): impulse: found "},
+                      Planted{"pull", "node 1, interface 'floor' (law 'broken'): cone: the impulse -1 pulls"},
+                      Planted{"lets_in", "node 1, interface 'floor' (law 'broken'): gap: it is "},
+                      Planted{"other_energy", "interface 'floor' (law 'broken'): energy: part "}),
+    [](const auto& drawn) { return std::string(drawn.param.broken); });
+
+std::string audit_of(const json& run, const json& as) {
+  Scene scene = scene_of(run), other = scene_of(as);
+  try {
+    run_audited(scene, other, 5);
+  } catch (const AuditFailure& failure) {
+    return failure.what();
+  }
+  return "";
+}
+
+// A run that has the loads, or leaves out the interfaces, of another scene.
+TEST(AuditFinds, AForceThatIsNotThere) {
+  json more = resting("contact");
+  more["loads"][0]["acceleration"] = {-0.0010001};
+  EXPECT_THAT(audit_of(resting("contact"), more),
+              StartsWith("step 1, time 1: node 0: momentum along axis 0"));
+  json none = resting("contact");
+  none["interfaces"] = json::array();
+  EXPECT_THAT(audit_of(resting("contact"), none),
+              StartsWith("step 1, time 1: node 1: momentum along axis 0"));
+}
+
+TEST(Audit, ChangesNoBitOfARun) {
+  const auto plain = fresh_folder(), audited = fresh_folder();
+  ASSERT_EQ(run_scene(shipped("bouncing_ball"), plain).code, 0);
+  ASSERT_EQ(run_scene(shipped("bouncing_ball"), audited, "--audit").code, 0);
+  EXPECT_EQ(text_of(plain / "history.csv"), text_of(audited / "history.csv"));
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
