@@ -118,14 +118,16 @@ AuditedInterface::Call AuditedInterface::call_of(int node_index, const AuditedSt
   const std::size_t k = static_cast<std::size_t>(node_index);
   const bool is_active = interface_.is_active(contact);
   Call call;
+  call.area = interface_.setup().areas[k];
   const bool is_partnered = !interface_.setup().counterpart->partners().empty();
   if (is_partnered) {
     const ContactPoint& point = interface_.point(contact);
     call.normal = point.normal;
-    Vector from = model_.position(interface_.nodes()[k], step.u);
-    for (std::size_t p = 0; p < static_cast<std::size_t>(point.partner_count); ++p)
-      from -= point.weights[p] * model_.position(point.partners[p], step.u);
+    Vector from = Vector::Zero(d_);
+    point.for_each_node(interface_.nodes()[k],
+                        [&](int node, double weight) { from += weight * model_.position(node, step.u); });
     call.gap = from.dot(call.normal) - interface_.setup().gap_offset(node_index);
+    if (point.area > 0.0) call.area = interface_.setup().area_factor * point.area;
   } else {
     const ContactPoint point = interface_.setup().counterpart->contact_point(node_index, step.u, step.time);
     call.normal = point.normal;
@@ -161,7 +163,7 @@ void AuditedInterface::evaluate(Call& call, int node_index, const AuditedStep& s
                                                        : ilaw::input(call.delassus.data(), 0, 0);
   batch.gap = ilaw::input(&call.gap, 0, 0);
   batch.normal = ilaw::input(call.normal.data(), 0, 1);
-  batch.area = ilaw::input(&interface_.setup().areas[static_cast<std::size_t>(node_index)], 0, 0);
+  batch.area = ilaw::input(&call.area, 0, 0);
   batch.per_node_parameters = parameters.data();
   batch.state_in = ilaw::input(call.state.data(), 0, 1);
   batch.state_out = ilaw::output(call.next_state.data(), 0, 1);

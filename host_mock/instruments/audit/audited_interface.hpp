@@ -35,7 +35,7 @@ class AuditedInterface {
   // What a law is given and returns for a node.
   struct Call {
     Vector normal, v_free, v_smooth, v_previous, impulse, delassus;
-    double gap = 0.0;
+    double gap = 0.0, area = 0.0;
     ilaw_batch_flags flags = 0;
     std::vector<double> parameters, state, next_state;
     std::array<double, ILAW_ENERGY_COUNT> energy{};
