@@ -120,9 +120,15 @@ struct Packs {
       const auto numbers = std::bit_cast<std::array<double, problem_size>>(problems[j]);
       for (std::size_t c = 0; c < problem_size; ++c) columns[c][j] = numbers[c];
     }
+    // Packs are columns, but no types that bit_cast takes.
+    problem<V> packed{};
+    static_assert(sizeof packed == sizeof columns);
+    std::memcpy(static_cast<void*>(&packed), &columns, sizeof packed);
     answer<V> answer{};
-    const auto not_solved = spring.solve(std::bit_cast<problem<V>>(columns), friction, answer);
-    const auto packs = std::bit_cast<std::array<std::array<double, lanes>, answer_size>>(answer);
+    const auto not_solved = spring.solve(packed, friction, answer);
+    std::array<std::array<double, lanes>, answer_size> packs;
+    static_assert(sizeof answer == sizeof packs);
+    std::memcpy(static_cast<void*>(&packs), &answer, sizeof answer);
     for (std::size_t j = 0; j < lanes; ++j) {
       std::array<double, answer_size> own;
       for (std::size_t c = 0; c < answer_size; ++c) own[c] = packs[c][j];
