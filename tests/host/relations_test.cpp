@@ -8,13 +8,13 @@
 namespace ilaw::host::testing {
 namespace {
 
-constexpr std::int64_t steps = 300;
+constexpr std::int64_t most_steps = 300;
 
 // How often each relation was found to hold, over some scenes.
 class Relations : public ::testing::Test {
  protected:
   void expect_all(const json& source, const fs::path& file) {
-    const RelationReport report = check_relations(source, file, steps);
+    const RelationReport report = check_relations(source, file, most_steps);
     for (const std::string& broken : report.broken) ADD_FAILURE() << file << ": " << broken;
     for (const auto& [name, count] : report.held) held_[name] += count;
     vague_ += report.vague;
@@ -22,7 +22,7 @@ class Relations : public ::testing::Test {
   // So that none is left out unseen.
   void expect_each(std::int64_t least) const {
     for (const Relation& relation : relations()) EXPECT_GE(held(relation.name), least) << relation.name;
-    for (const char* bits : {"with two threads", "beside itself", "resumed", "with plain steps",
+    for (const char* bits : {"with two threads", "beside itself", "resumed", "with plain most_steps",
                              "without skipping", "with parameters in reverse order"})
       EXPECT_GE(held(bits), least) << bits;
   }
