@@ -171,26 +171,6 @@ TEST(Coulomb, RoundingOfAContactThatStuckIsNoSlip) {
   }
 }
 
-// On an obstacle that moves, the velocity before is rounding of what the two had in common. What that turns
-// round is no slip; half of the speed is.
-TEST(Coulomb, RoundingOfAnObstacleThatMovesIsNoSlip) {
-  for (const std::uint32_t form : {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_FULL})
-    for (const double friction : {0.5, inf_value})
-      for (const auto& [speed, status] :
-           {std::pair{1e-17, ILAW_STICK}, {1e-15, ILAW_STICK}, {5e-4, ILAW_SLIP}}) {
-        NodeRun node("coulomb", {{{"friction", friction}}, {}}, 1e-3, form);
-        if (form == ILAW_DELASSUS_FULL) node.h = {1.0, 0.8, 0.7, 0.1, 0.05, 0.02};
-        node.v_previous = {0.0, -speed, 0.0};
-        ASSERT_EQ(node.step({-0.01, 1e-3, 0.0}), ILAW_OK);
-        EXPECT_EQ(node.status, status) << form << ", " << friction << ", " << speed;
-        EXPECT_NEAR(node.v[1],
-                    status == ILAW_STICK           ? 0.0
-                    : form == ILAW_DELASSUS_SCALAR ? 5e-4
-                                                   : node.v[1],
-                    2e-14);
-      }
-}
-
 // Friction never rises with the speed, also beside a node in the same pack where it falls.
 TEST(Coulomb, KineticCoefficientIsNeverTheLarger) {
   const Parameters varying{{{"friction", 0.4}, {"decay", 1e6}}, {}, {}, {"kinetic_friction"}};

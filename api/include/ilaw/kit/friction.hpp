@@ -71,9 +71,8 @@ ILAW_KIT_INLINE fraction<V> root_of_work(V c2, V c1, V c0) {
   return {select(c1 <= 0.0, root - c1, -2.0 * c0), select(c1 <= 0.0, 2.0 * c2, root + c1)};
 }
 
-// A part that rounding cannot tell from 1: the contact sticks. It also sticks where what is left of the slip
-// is rounding beside the speed that the impulse stops: an obstacle that moves leaves that much.
-inline constexpr double sticking_part = 1.0 - 0x1p-46, rounding_of_slip = 0x1p-40;
+// A part that rounding cannot tell from 1: the contact sticks.
+inline constexpr double sticking_part = 1.0 - 0x1p-46;
 
 // The tangential impulse -factor q_T, and the status where the contact is pressed.
 template <class V>
@@ -104,9 +103,7 @@ ILAW_KIT_INLINE friction_factor<V> rub(V h_t, V normal, scaled_length<V> speed, 
     const V numerator = select(gains, zero_unless(!far, part.numerator), 1.0);
     const V denominator = select(gains & !far, part.denominator, 1.0);
     const V whole = h_t * denominator;
-    const V pressed = smaller(limit, speed.down * normal);
-    const auto slides = slip * numerator > limit * whole,
-               turns = slip * (denominator - numerator) > rounding_of_slip * (pressed * whole);
+    const auto slides = slip * numerator > limit * whole, turns = numerator < sticking_part * denominator;
     factor = select(slides, limit, numerator) / select(slides, slip, whole);
     code = select(slides | turns, V(status::slip.code), V(status::stick.code));
   }
@@ -215,9 +212,7 @@ void take_off_positive_work(const friction_problem<V>& p, friction_answer<V>& a)
   const V whole = select(gains, dissipative_part(r_a, r_n + (r_1 + r_2)), 1.0);
   for (int k = 0; k < 3; ++k) r[k] = r[k] * whole;
   const V moved = select(r[0] > 0.0, V(status::slip.code), V(status::free.code));
-  const V kept = part * whole, left = (1.0 - kept) * (absolute(q[1]) + absolute(q[2]));
-  const V pressed = smaller(smaller(p.contact.mu[0], p.contact.mu[1]), 1.0) * r[0] * smaller(h[1], h[2]);
-  a.status = select((kept < sticking_part) & (left > rounding_of_slip * pressed), moved, a.status);
+  a.status = select(part * whole < sticking_part, moved, a.status);
 }
 
 // Without coupling, and with one tangential entry or one tangential velocity, the closed form above holds.
