@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 struct ilaw_instance {};
 
@@ -92,13 +93,13 @@ double stop(const ilaw_batch& batch, std::int64_t node) {
   return gap <= 0.0 && v < 0.0 ? -part * v / inverse_mass : 0.0;
 }
 
-// What an audit must find: an answer that depends on the calls before, and one that no such law may give.
+// What an audit must find: another answer when it is asked again, and one that no such law may give.
 double false_impulse(const ilaw_batch& batch, std::int64_t node) {
-  static int calls = 0;
+  static double asked_at = 0.0;
   if (breaks("push")) return 1.0;  // whatever the motion
   if (breaks("lets_in")) return stop(batch, node);
   if (batch.time < 2.9) return 0.0;
-  if (breaks("other_answer")) return ++calls % 2 == 0 ? 1.0 : 0.0;
+  if (breaks("other_answer")) return std::exchange(asked_at, batch.time) < batch.time ? 1.0 : 0.0;
   return breaks("pull") ? -1.0 : 0.0;
 }
 

@@ -6,11 +6,11 @@
 namespace ilaw::host::testing {
 namespace {
 
-void run_audited(Scene& scene, const Scene& as, std::int64_t steps) {
+void run_audited(Scene& scene, const Scene& as, std::int64_t most_steps) {
   Integrator integrator = integrator_of(scene);
   integrator.start();
   Audit audit(as, integrator);
-  while (integrator.steps() < std::min(scene.steps, steps)) {
+  while (integrator.steps() < std::min(scene.steps, most_steps)) {
     audit.open();
     integrator.step();
     audit.close();
@@ -47,14 +47,15 @@ class AuditFinds : public ::testing::TestWithParam<Planted> {};
 TEST_P(AuditFinds, WhatALawDoesWrong) {
   const std::string setting = std::string("ILAW_BROKEN=") + GetParam().broken + " ";
   EXPECT_THAT(run_scene(resting("broken"), fresh_folder(), "--audit", setting),
-              Exits(1, AllOf(HasSubstr("audit: step 3, time 3: "), HasSubstr(GetParam().found))));
+              Exits(1, AllOf(HasSubstr("audit: step "), HasSubstr(GetParam().found))));
 }
 INSTANTIATE_TEST_SUITE_P(
     Host, AuditFinds,
-    ::testing::Values(Planted{"other_answer", "node 1, interface 'floor' (law 'broken'): impulse: found "},
-                      Planted{"pull", "node 1, interface 'floor' (law 'broken'): cone: the impulse -1 pulls"},
-                      Planted{"lets_in", "node 1, interface 'floor' (law 'broken'): gap: it is "},
-                      Planted{"other_energy", "interface 'floor' (law 'broken'): energy: part "}),
+    ::testing::Values(
+        Planted{"other_answer", "3, time 3: node 1, interface 'floor' (law 'broken'): impulse: found "},
+        Planted{"pull", "3, time 3: node 1, interface 'floor' (law 'broken'): cone: the impulse -1 pulls"},
+        Planted{"lets_in", "4, time 4: node 1, interface 'floor' (law 'broken'): gap: it is "},
+        Planted{"other_energy", "3, time 3: interface 'floor' (law 'broken'): energy: part "}),
     [](const auto& drawn) { return std::string(drawn.param.broken); });
 
 std::string audit_of(const json& run, const json& as) {
@@ -72,11 +73,11 @@ TEST(AuditFinds, AForceThatIsNotThere) {
   json more = resting("contact");
   more["loads"][0]["acceleration"] = {-0.0010001};
   EXPECT_THAT(audit_of(resting("contact"), more),
-              StartsWith("step 1, time 1: node 0: momentum along axis 0"));
+              StartsWith("audit: step 1, time 1: node 0: momentum along axis 0"));
   json none = resting("contact");
   none["interfaces"] = json::array();
   EXPECT_THAT(audit_of(resting("contact"), none),
-              StartsWith("step 1, time 1: node 1: momentum along axis 0"));
+              StartsWith("audit: step 1, time 1: node 1: momentum along axis 0"));
 }
 
 TEST(Audit, ChangesNoBitOfARun) {

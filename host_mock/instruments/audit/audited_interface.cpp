@@ -169,6 +169,8 @@ void AuditedInterface::evaluate(Call& call, int node_index, const AuditedStep& s
   batch.state_out = ilaw::output(call.next_state.data(), 0, 1);
   batch.impulse = ilaw::output(call.impulse.data(), 0, 1);
   batch.energy = ilaw::output(call.energy.data(), 0, 1);
+  ilaw_status status = ILAW_FREE;
+  batch.status = &status;
   ilaw_report report{};
   report.struct_size = sizeof report;
   if (const std::int32_t code = law_.evaluate(batch, &report); code != ILAW_OK)
@@ -229,12 +231,13 @@ void AuditedInterface::check_node(int node_index, const AuditedStep& step) {
                              (own.impulse - call.impulse).cwiseProduct(call.delassus).norm() / speed));
 }
 
-// A rigid law lets nothing further in once the gap is closed.
+// Once the gap is closed a rigid law lets nothing further in, but as fast as it came out in the step before:
+// then its impulse would do work on the way out.
 void AuditedInterface::check_gap(const Call& call, int node_index, const AuditedStep& step) const {
   if (!is_rigid_ || call.gap > -rounding * step.farthest) return;
   const Vector v = call.v_free + call.delassus.cwiseProduct(call.impulse);
-  const double bound =
-      law_bound * std::max(step.speed, call.v_free.norm()) + rounding * step.farthest / step.dt;
+  const double bound = law_bound * std::max(step.speed, call.v_free.norm()) +
+                       rounding * step.farthest / step.dt + std::max(0.0, call.v_previous.dot(call.normal));
   if (v.dot(call.normal) < -bound)
     fail(node_index, formatted("gap: it is %.3g and closes at %.3g, which a rigid law allows by %.3g alone",
                                call.gap, -v.dot(call.normal), bound));
