@@ -148,7 +148,8 @@ TEST(Program, NamesWhatItDoesNotKnow) {
       "bench, --help, --version");
   EXPECT_EQ(
       first_line("run " + ball + " --outt here"),
-      "ilaw: found '--outt', expected one of --help, --out, --checkpoint-every, --resume, --threads, --tolerance, --set");
+      "ilaw: found '--outt', expected one of --help, --out, --checkpoint-every, --resume, --threads, --json-lines, --audit, "
+      "--tolerance, --set");
   EXPECT_EQ(first_line("run " + ball), "ilaw: --out is required");
   EXPECT_EQ(first_line("run " + ball + " --out here --threads 0"),
             "ilaw: --threads: Value 0 not in range 1 to 1024");

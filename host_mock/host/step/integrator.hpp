@@ -128,11 +128,11 @@ class Integrator {
   double dt_, begin_;
   std::optional<PrestressSetup> prestress_;
   std::optional<PrestressReport> prestressed_;
-  bool was_held_ = true;         // obstacles stood still in the last step of the prestress
   double first_residual_ = 0.0;  // of the prestress, as an impulse
   bool loads_are_steady_;
   bool transmits_steadily_;               // H is the same in all steps
   bool forces_are_steady_;                // loads are, and there are no others
+  bool was_held_ = true;                  // obstacles stood still in the last step of the prestress
   std::vector<std::size_t> correcting_;   // loads in the order in which they correct velocities
   std::vector<Dofs> kept_load_impulses_;  // by load; empty where nobody asks
   std::int64_t steps_ = 0;

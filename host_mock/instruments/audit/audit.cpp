@@ -80,7 +80,7 @@ void Audit::check_momentum(const Dofs& contact) const {
   for (const auto& load : scene_.loads)
     for (const int node : load->prescribed_nodes())
       for (const int axis : load->prescribed_axes())
-        is_driven[static_cast<std::size_t>(node * model.dimension() + axis)] = true;
+        is_driven[static_cast<std::size_t>(Eigen::Index{node} * model.dimension() + axis)] = true;
   expected += left.cwiseProduct(inverse_mass_);
   const Dofs scale =
       before.cwiseAbs() + v.cwiseAbs() +

@@ -3,7 +3,7 @@
 
 #include "base/scene_error.hpp"
 #include "base/words.hpp"
-#include "step/dof_loops.hpp"
+#include "step/integrator.hpp"
 #include "stress/related_scenes.hpp"
 
 #include <omp.h>
