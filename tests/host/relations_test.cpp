@@ -8,13 +8,13 @@
 namespace ilaw::host::testing {
 namespace {
 
-constexpr std::int64_t most_steps = 300;
+constexpr std::int64_t shipped_steps = 300;
 
 // How often each relation was found to hold, over some scenes.
 class Relations : public ::testing::Test {
  protected:
   void expect_all(const json& source, const fs::path& file) {
-    const RelationReport report = check_relations(source, file, most_steps);
+    const RelationReport report = check_relations(source, file, shipped_steps);
     for (const std::string& broken : report.broken) ADD_FAILURE() << file << ": " << broken;
     for (const auto& [name, count] : report.held) held_[name] += count;
     vague_ += report.vague;
