@@ -54,6 +54,7 @@ json out_of_reach(const Scene& read, const json& nodes, const std::string& name)
 
 // A node that two interfaces have is solved with others, even if one of them is out of reach.
 Made bystander(const json& source, const Scene& read) {
+  if (source["interfaces"].empty()) return {};
   RelatedScene made{source};
   made.source["interfaces"].push_back(out_of_reach(read, source["interfaces"][0]["nodes"], "out_of_reach"));
   return made;
