@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cstdarg>
 #include <cstdio>
 #include <new>
 
@@ -19,10 +20,12 @@ double clock_now() {
 }
 
 // One write each, so that lines of several processes do not mix.
-template <class... Values>
-void write_to_stderr(const char* format, Values... values) {
+[[gnu::format(printf, 1, 2)]] void write_to_stderr(const char* format, ...) {
   std::array<char, 400> text{};
-  const int size = std::snprintf(text.data(), text.size(), format, values...);
+  va_list values;
+  va_start(values, format);
+  const int size = std::vsnprintf(text.data(), text.size(), format, values);
+  va_end(values);
   [[maybe_unused]] const ssize_t written = write(
       STDERR_FILENO, text.data(), std::min(static_cast<std::size_t>(std::max(size, 0)), text.size() - 1));
 }

@@ -12,7 +12,7 @@ namespace {
 
 // In shortest edges of the main surface: how far a row slides before its weights are integrated again, and
 // how far beyond the reach facets are listed.
-constexpr double most_slip = 0.02, margin = 0.3;
+constexpr double most_slip = 0.02, listed_beyond = 0.3;
 constexpr double least_weight = 1e-15;  // smaller ones are rounding
 
 template <class Number>
@@ -135,7 +135,7 @@ void MortarSurface::list_pairs(double reach) {
   if (is_list_made_) past_motion_ += motion();
   is_list_made_ = true;
   at_list_ = at_;
-  horizon_ = reach + margin * shortest_edge();
+  horizon_ = reach + listed_beyond * shortest_edge();
   find_candidates();
   listed_.clear();
   for (std::size_t p = 0; p < patches_.size(); ++p) {

@@ -16,7 +16,7 @@ constexpr double least_cosine = 0.2;
 // blend.
 constexpr double least_part = 1e-12, thin = 0.02, wide = 0.1;
 // Of a facet's size: rounding of the places of corners.
-constexpr double rounding = 1e-9;
+constexpr double corner_rounding = 1e-9;
 
 struct QuadraturePoint {
   double a, b, weight;
@@ -96,8 +96,8 @@ double FacetIntegral::dual_share() const {
       centroid += standard_.own(i, j) / standard_.area[i] * outline_[static_cast<std::size_t>(j)];
     double reached = 0.0;
     for (const Polygon& piece : pieces_)
-      reached = std::max(
-          reached, last_inside(piece, centroid, outline_[static_cast<std::size_t>(i)], rounding * size_));
+      reached = std::max(reached, last_inside(piece, centroid, outline_[static_cast<std::size_t>(i)],
+                                              corner_rounding * size_));
     share = std::min(share, reached);
   }
   return share * std::clamp((covered - thin) / (wide - thin), 0.0, 1.0);
