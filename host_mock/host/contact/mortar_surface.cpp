@@ -30,7 +30,7 @@ void check_indices(const std::vector<std::int32_t>& indices, std::size_t count) 
     if (index < 0 || static_cast<std::size_t>(index) >= count) refuse_damaged();
 }
 
-Eigen::AlignedBox3d box_of(const FacetShape& corners) {
+Eigen::AlignedBox3d bounds_of(const FacetShape& corners) {
   Eigen::AlignedBox3d box;
   for (std::size_t k = 0; k < corners.count; ++k) box.extend(corners.at[k]);
   return box;
@@ -140,10 +140,10 @@ void MortarSurface::list_pairs(double reach) {
   listed_.clear();
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     Patch& patch = patches_[p];
-    const Eigen::AlignedBox3d face = box_of(corners_of(patch));
+    const Eigen::AlignedBox3d face = bounds_of(corners_of(patch));
     const auto first = found_.begin() + first_[p];
     const auto end = std::remove_if(first, found_.begin() + first_[p + 1], [&](std::int32_t facet) {
-      return face.squaredExteriorDistance(box_of(corners_of(facet))) > horizon_ * horizon_;
+      return face.squaredExteriorDistance(bounds_of(corners_of(facet))) > horizon_ * horizon_;
     });
     if (!std::equal(first, end, patch.candidates.begin(), patch.candidates.end())) {
       patch.candidates.assign(first, end);
