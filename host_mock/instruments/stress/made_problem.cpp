@@ -339,24 +339,40 @@ MadeAudit MadeProblem::audit(Wrench Contact::*impulse, Wrench Body::*velocity) c
 
 // Velocity by which an impulse is off the law's. Large friction coefficients, ruptures and softening bonds
 // answer to the last digits of a velocity, so it counts as right if it is right at a velocity within the
-// tolerance.
+// tolerance, which is looked for along four diagonals.
 double MadeProblem::least_error(const Contact& contact, const Matrix& h, const Wrench& v_free,
                                 const Wrench& r) const {
   constexpr double known = 1e-10, small = 1e-9;
-  const auto error_at = [&](const Wrench& v) {
-    const Wrench off = h * (answer(contact, v) - r);
+  const auto size_of = [&](const Wrench& impulse) {
+    const Wrench velocity = h * impulse;
     double most = 0.0;
     for (std::size_t c = 0; c < static_cast<std::size_t>(width()); ++c) {
       const double length = c < 3 ? 1.0 : std::sqrt((h[0][0] + h[1][1] + h[2][2]) / (3.0 * h[3][3]));
-      if (const double x = length * std::fabs(off[c]); !(x <= most)) most = x;
+      if (const double x = length * std::fabs(velocity[c]); !(x <= most)) most = x;
     }
     return std::isfinite(most) ? most : std::numeric_limits<double>::infinity();
   };
+  const auto error_at = [&](const Wrench& v) { return size_of(answer(contact, v) - r); };
   double least = error_at(v_free);
-  for (std::size_t k = 0; k < 8 && least > small * scale(); ++k) {
-    Wrench nudged = v_free;
-    for (std::size_t c = 0; c < 3; ++c) nudged[c] += (k >> c & 1U ? known : -known) * scale();
-    least = std::min(least, error_at(nudged));
+  for (std::size_t k = 0; k < 4 && least > small * scale(); ++k) {
+    const Wrench direction{k & 1U ? known : -known, k & 2U ? known : -known, known};
+    const auto nudged = [&](double part) {
+      Wrench v = v_free;
+      for (std::size_t c = 0; c < 3; ++c) v[c] += part * scale() * direction[c];
+      return v;
+    };
+    // Where the answer passes by that impulse between both ends, or jumps over it.
+    double low = -1.0, high = 1.0;
+    const Wrench across = answer(contact, nudged(high)) - answer(contact, nudged(low));
+    least = std::min({least, error_at(nudged(low)), error_at(nudged(high))});
+    for (int bisections = 0; bisections < 50 && least > small * scale(); ++bisections) {
+      const double middle = 0.5 * (low + high);
+      const Wrench off = answer(contact, nudged(middle)) - r;
+      least = std::min(least, size_of(off));
+      double along = 0.0;
+      for (std::size_t c = 0; c < off.size(); ++c) along += off[c] * across[c];
+      (along > 0.0 ? high : low) = middle;
+    }
   }
   return least;
 }
