@@ -26,24 +26,17 @@ ilaw_result ILAW_CALL ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies
   if (asked.exchange && !sized::is_complete(asked.exchange)) return ILAW_INVALID_ARGUMENT;
   if (asked.pool && !sized::is_complete(asked.pool)) return ILAW_INVALID_ARGUMENT;
   ilaw_coupled_report said{};
-  if (asked.pool && !asked.pool->run) {
+  const auto refuse = [&](const char* reason) {
     said.bad_group = said.bad_contact = -1;
-    said.reason = "the function of the pool is null";
+    said.reason = reason;
     if (report) sized::write(report, said);
     return ILAW_INVALID_ARGUMENT;
-  }
-  if (asked.exchange && !(asked.exchange->sum_bodies && asked.exchange->largest && asked.exchange->sum)) {
-    said.bad_group = said.bad_contact = -1;
-    said.reason = "a function of the exchange is null";
-    if (report) sized::write(report, said);
-    return ILAW_INVALID_ARGUMENT;
-  }
-  if (solver->is_in_use.test_and_set(std::memory_order_acquire)) {
-    said.bad_group = said.bad_contact = -1;
-    said.reason = "another thread's call uses the solver; give each thread its own";
-    if (report) sized::write(report, said);
-    return ILAW_INVALID_ARGUMENT;
-  }
+  };
+  if (asked.pool && !asked.pool->run) return refuse("the function of the pool is null");
+  if (asked.exchange && !(asked.exchange->sum_bodies && asked.exchange->largest && asked.exchange->sum))
+    return refuse("a function of the exchange is null");
+  if (solver->is_in_use.test_and_set(std::memory_order_acquire))
+    return refuse("another thread's call uses the solver; give each thread its own");
   int32_t code = ILAW_OUT_OF_MEMORY;
   try {
     code = solver->solver.solve(bodies, groups, group_count, asked, said);

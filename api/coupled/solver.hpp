@@ -29,8 +29,8 @@ class Solver {
   const char* complaint_of_overlaps(const ilaw_bodies& bodies) const;
   void split_shared_bodies();
   void iterate(Limits limits);
-  // From the impulses. Returns the largest change of a velocity.
   bool release_bonds();
+  // From the impulses. Returns the largest change of a velocity.
   double set_velocities();
   void find_scale(Limits& limits);
   void forget_large_impulses();

@@ -16,9 +16,6 @@
 namespace ilaw::host {
 namespace {
 
-// H of a driven axis as laws are given it, beside the largest of the node: they resolve 2^-42 of it.
-constexpr double driven_delassus = 0x1p-40;
-
 // On a plane that turns about its normal the law cannot see what its tangential memory has to turn with. Axes
 // in its state would have to turn in every step (turn_axis), and contacts out of reach be asked for that.
 InterfaceSetup with_tangent(InterfaceSetup setup, const Model& model) {

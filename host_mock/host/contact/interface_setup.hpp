@@ -20,6 +20,9 @@ struct HeatSetup {
   std::optional<Table> obstacle_temperature;
 };
 
+// H of a driven axis as laws are given it, beside the largest of the node: they resolve 2^-42 of it.
+inline constexpr double driven_delassus = 0x1p-40;
+
 struct InterfaceSetup {
   std::string name, law, library;  // library: name or path
   Arguments arguments;

@@ -30,6 +30,9 @@ void check_indices(const std::vector<std::int32_t>& indices, std::size_t count) 
     if (index < 0 || static_cast<std::size_t>(index) >= count) refuse_damaged();
 }
 
+// A triangle names its last corner twice.
+std::size_t corner_count_of(const std::array<int, 4>& facet) { return facet[3] == facet[2] ? 3 : 4; }
+
 Eigen::AlignedBox3d bounds_of(const FacetShape& corners) {
   Eigen::AlignedBox3d box;
   for (std::size_t k = 0; k < corners.count; ++k) box.extend(corners.at[k]);
@@ -49,7 +52,7 @@ MortarSurface::MortarSurface(const Model& model, const NodeSet& own, const NodeS
   for (std::size_t k = 0; k < own.nodes.size(); ++k)
     index[static_cast<std::size_t>(own.nodes[k])] = static_cast<std::int32_t>(k);
   for (const auto& facet : own.facets) {
-    Patch patch{{}, facet[3] == facet[2] ? std::size_t{3} : std::size_t{4}, {}, {}};
+    Patch patch{{}, corner_count_of(facet), {}, {}};
     for (std::size_t k = 0; k < 4; ++k) {
       patch.corners[k] = index[static_cast<std::size_t>(facet[k])];
       face_points_.push_back(patch.corners[k]);
@@ -71,7 +74,7 @@ FacetShape MortarSurface::corners_of(const Patch& patch) const {
 
 FacetShape MortarSurface::corners_of(std::int32_t main_facet) const {
   const Facet& facet = facets()[static_cast<std::size_t>(main_facet)];
-  FacetShape corners{facet[3] == facet[2] ? std::size_t{3} : std::size_t{4}, {}};
+  FacetShape corners{corner_count_of(facet), {}};
   for (std::size_t k = 0; k < corners.count; ++k) corners.at[k] = place(facet[k]);
   return corners;
 }

@@ -51,7 +51,7 @@ void Audit::close() try {
     interface->close(
         {u, v, integrator_.velocity_before(), v_smooth, integrator_.time(), scene_.dt, speed, farthest});
 } catch (const AuditFailure& failure) {
-  throw AuditFailure(step_text() + std::string(failure.what()).substr(7));
+  throw AuditFailure("audit: " + step_text() + failure.what());
 }
 
 // m (v - v_before) = h f_ext + shocks - h f_int + r, degree of freedom by degree of freedom. Loads that

@@ -16,7 +16,7 @@ namespace ilaw::host {
 
 class AuditFailure : public std::runtime_error {
  public:
-  explicit AuditFailure(const std::string& what) : std::runtime_error("audit: " + what) {}
+  using std::runtime_error::runtime_error;
 };
 
 class AuditedInterface;

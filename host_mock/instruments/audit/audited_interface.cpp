@@ -27,9 +27,6 @@ ilaw_delassus_form form_of(const Interface& interface) {
                                             : ilaw_delassus_form{ILAW_DELASSUS_SCALAR};
 }
 
-// The smallest part of the largest H that a law is given along an axis that is driven.
-constexpr double least_part_of_delassus = 0x1p-40;
-
 }  // namespace
 
 AuditedInterface::AuditedInterface(const Interface& interface, const Model& model)
@@ -101,7 +98,7 @@ void AuditedInterface::find_velocities(Call& call, int node_index, const Audited
   call.v_smooth = relative_velocity(point, node, d_, step.v_smooth) - after;
   Vector own(d_);
   for (int axis = 0; axis < d_; ++axis) own[axis] = point.delassus(interface_.inverse_mass(), d_, node, axis);
-  call.delassus = own.cwiseMax(least_part_of_delassus * own.maxCoeff());
+  call.delassus = own.cwiseMax(driven_delassus * own.maxCoeff());
   call.v_free = relative_velocity(point, node, d_, step.v) - after - own.cwiseProduct(call.impulse);
 }
 
