@@ -83,7 +83,7 @@ def scene():
         "model": {"type": "solids", "meshes": [{
             "name": "stones", "file": "arch.vtu",
             "material": {"type": "neo_hookean", "young": 1e7, "poisson": 0.2, "density": 2000.0}}]},
-        "time": {"cfl": 0.7, "end": 0.9},
+        "time": {"cfl": 0.7, "end": 0.5},
         "loads": [{"type": "gravity", "name": "weight", "acceleration": [0.0, 0.0, -9.81]}],
         "interfaces": [ground] + [joint(name, stone) for name in ARCHES for stone in range(1, STONES)],
         "output": {"every": 5, "watch": crowns, "forces": ["ground"], "fields": 20},
