@@ -1,0 +1,336 @@
+#!/usr/bin/env python3
+"""The validation matrix: what runs give beside closed forms, and what the best penalty gives in the same scene.
+
+    docs/validation.py [--check] [NAME ...]    ILAW_PROGRAM: the program, otherwise build/release/bin/ilaw
+
+Writes the table of docs/validation.md. --check runs the laws alone: each must give the number of the page, within the
+bound of its case.
+"""
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import argparse
+import copy
+import dataclasses
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any, Callable, Union
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "api/python"))
+sys.dont_write_bytecode = True
+
+from ilaw import runs  # noqa: E402
+
+PAGE = ROOT / "docs/validation.md"
+HEAD = "| case | law | quantity | reference | exact | found | error | best penalty | its steps | its stiffness | scene |"
+Scene = dict[str, Any]
+
+
+class Found:
+    """What a run left: columns of history.csv, the summary, and events by interface."""
+
+    def __init__(self, folder: Path) -> None:
+        results = runs.Results(folder)
+        self.columns, self.summary, self.folder = results.history, results.summary, folder
+        self.time = self.columns["time"]
+
+    def __getitem__(self, column: str) -> np.ndarray:
+        return self.columns[column]
+
+    def last(self, column: str) -> float:
+        return float(self[column][-1])
+
+    def mean_after(self, time: float, column: str) -> float:
+        return float(self[column][self.time > time].mean())
+
+    def first_event(self, kind: str) -> float:
+        lines = [line.split(",") for line in (self.folder / "events.csv").read_text().splitlines()]
+        return min(float(line[lines[0].index("time")]) for line in lines[1:] if kind in line)
+
+
+@dataclasses.dataclass
+class Case:
+    name: str
+    quantity: str
+    reference: str  # the closed form and its source
+    scene: Union[Path, Scene]
+    exact: Union[float, Callable[[Found], float]]
+    found: Callable[[Found], float]
+    bound: float  # of the error: relative, or absolute if the exact value is 0
+    stiffness: tuple[float, float] = (0.0, 0.0)  # range of the rival's; 0: none, since a spring has no such law
+
+    def source(self) -> Scene:
+        if isinstance(self.scene, dict):
+            return copy.deepcopy(self.scene)
+        source = json.loads(self.scene.read_text(encoding="utf-8"))
+        for mesh in source["model"].get("meshes", []):
+            mesh["file"] = str(self.scene.parent / mesh["file"])
+        return source
+
+    def exact_of(self, found: Found) -> float:
+        return self.exact(found) if callable(self.exact) else self.exact
+
+    def error_of(self, found: Found) -> float:
+        exact = self.exact_of(found)
+        return abs(self.found(found) - exact) / (abs(exact) or 1.0)
+
+
+def run(scene: Scene) -> Found:
+    folder = Path(tempfile.mkdtemp(prefix="ilaw_"))
+    scene["output"]["events"] = True
+    (folder / "scene.json").write_text(json.dumps(scene), encoding="utf-8")
+    program = os.environ.get("ILAW_PROGRAM", ROOT / "build/release/bin/ilaw")
+    done = subprocess.run([program, "run", folder / "scene.json", "--out", folder], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise runs.RunFailed(done.stderr.strip())
+    return Found(folder)
+
+
+def with_penalty(scene: Scene, stiffness: float) -> Scene:
+    """Springs in the place of contact and of Coulomb's law."""
+    scene = copy.deepcopy(scene)
+    for interface in scene["interfaces"]:
+        friction = interface.get("parameters", {}).get("friction", 0.0)
+        interface["law"] = "penalty"
+        interface["parameters"] = {"stiffness": stiffness, "friction": friction, "tangential_stiffness": stiffness}
+    return scene
+
+
+def best_penalty(case: Case, law: Found) -> str:
+    """The least error of nine stiffnesses, each at the largest step, of the law's and its halves, at which it runs."""
+    found = []
+    for stiffness in np.geomspace(*case.stiffness, 9):
+        for halvings in range(6):
+            scene = with_penalty(case.source(), float(stiffness))
+            scene["time"]["cfl" if "cfl" in scene["time"] else "dt"] *= 0.5**halvings
+            try:
+                ran = run(scene)
+            except runs.RunFailed:
+                continue
+            found.append((case.error_of(ran), f"{ran.summary['steps'] / law.summary['steps']:.2g} | {stiffness:.1g}"))
+            break
+    return "{:.1e} | {}".format(*min(found))
+
+
+HOST, ANALYST = ROOT / "host_mock/scenes", ROOT / "tests/host/analyst_scenes"
+
+
+def shaken_ball() -> Case:
+    """A dead ball leaves a table z = A sin(w t) where the table slows down by g, and flies until both meet again."""
+    amplitude, omega, gravity = 0.02, 40.0, 10.0
+    leaves = math.asin(gravity / (amplitude * omega**2)) / omega
+    speed = amplitude * omega * math.cos(omega * leaves)
+
+    def apart(t: float) -> float:
+        flown = amplitude * math.sin(omega * leaves) + speed * (t - leaves) - 0.5 * gravity * (t - leaves) ** 2
+        return flown - amplitude * math.sin(omega * t)
+
+    low, high = leaves + 0.02, leaves + 0.2
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if apart(middle) > 0 else (low, middle)
+    path = {"sine": {"amplitude": [amplitude], "frequency": omega / (2 * math.pi)}}
+    scene = {
+        "title": "A dead ball on a shaking table",
+        "model": {"type": "points", "dimension": 1, "points": [
+            {"mass": 1.0, "position": [0.0], "velocity": [amplitude * omega]}]},
+        "time": {"dt": 1e-4, "end": 0.2},
+        "loads": [{"type": "gravity", "acceleration": [-gravity]}],
+        "interfaces": [{"name": "table", "law": "contact", "nodes": "all",
+                        "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0], "path": path}}],
+        "output": {"every": 1, "watch": [0]},
+    }  # fmt: skip
+
+    def lands(found: Found) -> float:
+        free = np.flatnonzero(found["n0.r0"] == 0.0)
+        return float(found.time[free[np.flatnonzero(np.diff(free, append=0) != 1)[0]] + 1])
+
+    return Case("ball on a shaking table", "instant of landing [s]",
+                "free flight from where the table slows down by g; root of a transcendental equation",
+                scene, low, lands, 2e-3, (1e4, 1e8))  # fmt: skip
+
+
+def rope_on_drum() -> Case:
+    """One end of a rope that lies half around a drum bears a load, the other is drawn slowly."""
+    count, radius, friction = 60, 1.0, 0.3
+    half = 0.5 * math.pi / count
+    around = [[radius * math.cos(a), radius * math.sin(a)] for a in np.linspace(math.pi, 0.0, count + 1)]
+    length = 2.0 * radius * math.sin(half)
+    places = [[-radius, -length], *around, [radius, -length]]
+    last = len(places) - 1
+    scene = {
+        "title": "A rope drawn over a drum",
+        "model": {"type": "points", "dimension": 2,
+                  "points": [{"mass": 1e-3, "position": place} for place in places]},
+        "springs": [{"name": "rope", "nodes": list(range(last)), "to": list(range(1, last + 1)), "stiffness": 2e4,
+                     "damping": 0.3}],
+        "time": {"dt": 1e-4, "end": 3.0},
+        "loads": [{"type": "force", "name": "weight", "nodes": [0], "direction": [0.0, -1.0],
+                   "history": [[0.0, 0.0], [0.5, 1.0]]},
+                  {"type": "damping", "name": "air", "rate": 5.0},
+                  {"type": "motion", "name": "pull", "nodes": [last], "path": [[0.0, 0.0, 0.0], [3.0, 0.0, -0.03]]}],
+        "interfaces": [{"name": "drum", "law": "coulomb", "parameters": {"friction": friction},
+                        "nodes": list(range(1, last)),
+                        "obstacle": {"type": "sphere", "center": [0.0, 0.0], "radius": radius}}],
+        "output": {"every": 50, "watch": [0], "forces": ["drum", "pull", "weight"]},
+    }  # fmt: skip
+    # A corner of the polygon that slides turns the rope by `turn`: T' - T is mu (T' + T) tan(turn/2).
+    turns = [half, *[2.0 * half] * (count - 1), half]
+    ratio = math.prod((1.0 + friction * math.tan(turn / 2)) / (1.0 - friction * math.tan(turn / 2)) for turn in turns)
+    return Case("capstan", "pull over load", "exp(mu theta) of Euler and Eytelwein, of a polygon",
+                scene, ratio, lambda found: -found.mean_after(2.0, "pull.F1"), 1e-2, (1e2, 1e5))  # fmt: skip
+
+
+def rubber(found: Found) -> float:
+    """Force of the floor at the stretch that is reached; sideways the stress is 0."""
+    mu, bulk = 0.5e6 / 1.3, 1e6 * 0.3 / (1.3 * 0.4)
+    along, across = 1.0 + (found.last("n63.u2") - found.last("n0.u2")) / 0.1, 1.0
+    for _ in range(50):
+        off = mu * (across**2 - 1.0) + bulk * math.log(across**2 * along)
+        across -= off / (2.0 * mu * across + 2.0 * bulk / across)
+    return -0.01 * (mu * along + (bulk * math.log(across**2 * along) - mu) / along)
+
+
+def seal(_: Found) -> float:
+    young, poisson, squeeze, area, pressure = 5e6, 0.45, 0.1, 1e-4, 2e6
+    pushed = (1.0 - squeeze) * pressure * area
+    return area * young * squeeze / (1.0 - poisson**2) + poisson / (1.0 - poisson) * pushed
+
+
+def momentum_left(found: Found) -> float:
+    steps = np.diff(found.time, prepend=0.0)
+    acted = sum(float((found[f"{name}.F1"] * steps).sum()) for name in ("slope", "weight"))
+    return acted - sum(found.last(f"n{k}.v1") for k in range(45))
+
+
+def fifth_impact() -> float:
+    """u = -sin(10 t)/10 meets -0.05; with the speed w it is back after 2 (pi - atan(2 w))/10, and leaves with 0.8 w."""
+    instant, speed = math.pi / 60.0, 0.8 * math.cos(math.pi / 6.0)
+    for _ in range(4):
+        instant += 0.2 * (math.pi - math.atan(2.0 * speed))
+        speed *= 0.8
+    return instant
+
+
+def seventh_turn(found: Found) -> float:
+    """On the belt it moves with the belt's 0.1."""
+    sticks = np.abs(found["n0.v0"] - 0.1) <= 1e-12
+    return float(found.time[1 + np.flatnonzero(np.diff(sticks.astype(int)))[6]])
+
+
+def last_with(found: Found, column: str) -> float:
+    return float(found.time[np.flatnonzero(found[column])[-1]])
+
+
+CASES = [
+    Case("bar against a wall", "end of contact [s]", "two runs of the wave: 0.5 + 2 L/c", HOST / "bar_on_wall.json",
+         0.5 + 20.0 / 30.0, lambda found: last_with(found, "n0.r0"), 1e-2, (1e3, 1e7)),
+    Case("bar against a wall", "mean force [N]", "rho c v S", HOST / "bar_on_wall.json", 300.0,
+         lambda found: float(found["n0.r0"].sum()) / (20.0 / 30.0), 1e-2, (1e3, 1e7)),
+    Case("two bars collide", "speed of the first after it [m/s]", "wave in the short bar: it stops",
+         HOST / "two_bars.json", 0.0, lambda found: found.mean_after(2.5, "n100.v0"), 2e-2, (1e1, 1e5)),
+    Case("ball on a turning wheel", "speed along the wheel [m/s]", "mu (1 + e) v", HOST / "spinning_wheel.json", 0.9,
+         lambda found: found.last("n0.v0"), 2e-2),
+    Case("block that slides", "way [m]", "v^2/(2 mu g)", HOST / "sliding_block_3d.json", 0.5,
+         lambda found: math.hypot(found.last("n0.u0"), found.last("n0.u1")), 2e-3, (1e3, 1e7)),
+    Case("mass on a strut lands", "largest force of the floor [N]", "damped oscillator", HOST / "landing_gear.json",
+         2329.8, lambda found: float(found["floor.F0"][found.time > 0.21].max()), 5e-3, (1e5, 1e9)),
+    Case("ball thrown on a floor", "instant at which it stops [s]", "falls, rebounds and Coulomb's friction",
+         HOST / "oblique_impact.json", 4.0 / 3.0, lambda found: last_with(found, "n0.v0"), 1e-2, (1e3, 1e7)),
+    Case("mass on a spring and a stop", "instant of the fifth impact [s]", "harmonic between impacts",
+         HOST / "impact_oscillator.json", fifth_impact(), lambda found: last_with(found, "n0.r0"), 2e-3),
+    Case("stick-slip on a belt", "instant of the seventh turn [s]", "harmonic while it slips", HOST / "stick_slip.json",
+         0.5 + 3 * 0.4 + 3 * 0.2 * (math.pi - math.atan(2.0)), seventh_turn, 1e-2),
+    shaken_ball(),
+    rope_on_drum(),
+    Case("wheel with slip", "pull [N]", "brush model (Pacejka 2012, ch. 3)", HOST / "rolling_wheel.json",
+         7.0 / 8.0 * 0.5 * 2.0 * 5e5 * 0.03**3 / 1.5, lambda found: -found.mean_after(0.066, "wheel.F0"), 2e-2, (1e3, 1e7)),
+    Case("seal in its groove", "force of the lid [N]", "Hooke's law, two strains given", HOST / "seal.json", seal,
+         lambda found: -found.mean_after(0.019, "lid.F2"), 1e-3, (1e3, 1e9)),
+    Case("rubber block", "force of the floor [N]", "neo-Hooke (Bonet and Wood 2008, eq. 6.28)",
+         ANALYST / "rubber_block.json", rubber, lambda found: found.last("floor.F2"), 1e-3, (1e4, 1e8)),
+    *(Case("stack of three", f"force of '{name}' [N]", "weight above", ANALYST / "stack.json", weight,
+           lambda found, name=name: found.last(f"{name}.F2"), 1e-3, (1e5, 1e9))
+      for name, weight in (("floor", 130.0), ("lower", 50.0), ("upper", 10.0))),
+    Case("brake pad", "drag [N]", "mu times the pressing force", ANALYST / "brake_pad.json",
+         lambda found: 0.4 * found.mean_after(0.007, "disc.F2"), lambda found: found.mean_after(0.007, "disc.F0"), 1e-4,
+         (1e5, 1e9)),
+    Case("hail on a slope", "impulses less momentum, along y [N s]", "half a step of gravity, of 45 kg",
+         ANALYST / "hail.json", 45.0 * 10.0 * 0.0005, momentum_left, 1e-9),
+    Case("double cantilever", "length of the crack [m]", "beam theory (Williams 1989)", HOST / "dcb_peel.json",
+         (3.0 * 0.05**3 * 0.01**2 / (8.0 * 5e-8)) ** 0.25 - 0.605 * 0.05,
+         lambda found: found.summary["energy"]["dissipated_rupture"] / (5e-8 * 0.0125), 2e-2),
+    Case("bar in mixed mode", "work of rupture [J]", "toughness (Benzeggagh and Kenane 1996)", HOST / "mixed_mode_bar.json",
+         0.01 * (2e-6 + 6e-6 / 16.0), lambda found: found.summary["energy"]["dissipated_rupture"], 1e-9),
+    Case("tape peeled upright", "force [N]", "G b (Rivlin 1944)", ANALYST / "tape_peeled.json", 0.06,
+         lambda found: found.mean_after(0.044, "grip.F2"), 0.1),
+    Case("bars glued end to end", "instant of rupture [s]", "strength times area", ANALYST / "bonded_bars.json", 0.0035,
+         lambda found: found.first_event("rupture"), 2e-2),
+    Case("lap joint", "work of rupture [J]", "toughness times area", ANALYST / "lap_joint.json", 50.0 * 22.5e-5,
+         lambda found: found.summary["energy"]["dissipated_rupture"], 2e-2),
+    Case("bar on glue that heals", "instant of rupture [s]", "L/c + R_Y/(2 F)", HOST / "glued_bar.json", 1.5,
+         lambda found: found.first_event("rupture"), 2e-2),
+]  # fmt: skip
+
+
+def law_of(case: Case) -> str:
+    return ", ".join(sorted({interface["law"] for interface in case.source()["interfaces"]}))
+
+
+def scene_of(case: Case) -> str:
+    if isinstance(case.scene, dict):
+        return "`docs/validation.py`"
+    return f"[{case.scene.stem}](../{case.scene.relative_to(ROOT)})"
+
+
+def row(case: Case, found: Found) -> str:
+    penalty = best_penalty(case, found) if case.stiffness[1] else "- | - | -"
+    cells = [case.name, law_of(case), case.quantity, case.reference, f"{case.exact_of(found):.6g}",
+             f"{case.found(found):.6g}", f"{case.error_of(found):.1e}", penalty, scene_of(case)]  # fmt: skip
+    return "| " + " | ".join(cells) + " |"
+
+
+def on_the_page() -> dict[tuple[str, str], float]:
+    lines = PAGE.read_text(encoding="utf-8").splitlines()
+    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines[lines.index(HEAD) + 2 :]]
+    return {(cells[0], cells[2]): float(cells[5]) for cells in rows[: rows.index([]) if [] in rows else None]}
+
+
+def complaints(case: Case, found: Found, page: dict[tuple[str, str], float]) -> list[str]:
+    where, value, error = f"{case.name}, {case.quantity}", case.found(found), case.error_of(found)
+    wrong = [f"{where}: found an error of {error:.2g}, at most {case.bound:g}"] if not error <= case.bound else []
+    written = page.get((case.name, case.quantity), math.nan)
+    if not abs(value - written) <= 1e-5 * abs(value) + 0.01 * case.bound:
+        wrong.append(f"{where}: found {value:.6g}, the page has {written:g}")
+    return wrong
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="cases; without any, all")
+    parser.add_argument("--check", action="store_true", help="compare with the page")
+    given = parser.parse_args()
+    cases = [case for case in CASES if not given.names or case.name in given.names]
+    if unknown := set(given.names) - {case.name for case in CASES}:
+        parser.error(f"found {sorted(unknown)}, expected some of {sorted({case.name for case in CASES})}")
+    if given.check:
+        page = on_the_page()
+        wrong = [line for case in cases for line in complaints(case, run(case.source()), page)]
+        print("\n".join(wrong) or f"{len(cases)} quantities are as on the page")
+        return 1 if wrong else 0
+    print(HEAD + "\n" + "| --- " * (HEAD.count("|") - 1) + "|")
+    for case in cases:
+        print(row(case, run(case.source())), flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
