@@ -39,7 +39,8 @@ class Found:
 
     def __init__(self, folder: Path) -> None:
         results = runs.Results(folder)
-        self.columns, self.summary, self.folder = results.history, results.summary, folder
+        self.columns, self.summary = results.history, results.summary
+        self.events = (folder / "events.csv").read_text(encoding="utf-8")
         self.time = self.columns["time"]
 
     def __getitem__(self, column: str) -> np.ndarray:
@@ -52,7 +53,7 @@ class Found:
         return float(self[column][self.time > time].mean())
 
     def first_event(self, kind: str) -> float:
-        lines = [line.split(",") for line in (self.folder / "events.csv").read_text().splitlines()]
+        lines = [line.split(",") for line in self.events.splitlines()]
         return min(float(line[lines[0].index("time")]) for line in lines[1:] if kind in line)
 
 
@@ -84,14 +85,15 @@ class Case:
 
 
 def run(scene: Scene) -> Found:
-    folder = Path(tempfile.mkdtemp(prefix="ilaw_"))
     scene["output"]["events"] = True
-    (folder / "scene.json").write_text(json.dumps(scene), encoding="utf-8")
     program = os.environ.get("ILAW_PROGRAM", ROOT / "build/release/bin/ilaw")
-    done = subprocess.run([program, "run", folder / "scene.json", "--out", folder], capture_output=True, text=True)
-    if done.returncode != 0:
-        raise runs.RunFailed(done.stderr.strip())
-    return Found(folder)
+    with tempfile.TemporaryDirectory(prefix="ilaw_") as name:
+        folder = Path(name)
+        (folder / "scene.json").write_text(json.dumps(scene), encoding="utf-8")
+        done = subprocess.run([program, "run", folder / "scene.json", "--out", folder], capture_output=True, text=True)
+        if done.returncode != 0:
+            raise runs.RunFailed(done.stderr.strip())
+        return Found(folder)
 
 
 def with_penalty(scene: Scene, stiffness: float) -> Scene:
