@@ -268,7 +268,7 @@ def impacts():
     """Run time against error through impacts, of the study of docs/results/impacts.py."""
     titles = {"ball_e08": "ball, e = 0.8", "oscillator_e08": "mass on a spring against a stop",
               "oblique_e05": "thrown along a rough floor"}
-    looks = {"resolved": (BLUE, "o-"), "predictive": (GREEN, "s-"), "moreau": (PINK, "^-"),
+    looks = {"impact": (BLUE, "o-"), "predictive": (GREEN, "s-"), "moreau": (PINK, "^-"),
              "explicit k=1e+06": (ORANGE, "v-"), "implicit k=1e+06": (GREY, "D-")}
     figure, all_axes = plt.subplots(1, 3, figsize=(11.4, 3.7), sharey=True, gridspec_kw={"wspace": 0.08})
     for axes, (scene, title) in zip(all_axes, titles.items()):

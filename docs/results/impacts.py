@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Run time against error through impacts: resolved laws beside predictive, moreau and penalties.
+"""Run time against error through impacts: the law impact beside predictive, moreau and penalties.
 
     docs/results/impacts.py build/release/bin/ilaw        (docs/results/make.sh BUILD impacts calls it)
 
@@ -65,12 +65,17 @@ def penalties(restitution, friction):
            "parameters": {"stiffness": 1e6, "integration": "implicit", "restitution": restitution, **rub}}
 
 
+def laws_beside(own):
+    """`impact`, and both activations of the scene's law, whose parameters are `own`."""
+    impact = {name: own[name] for name in ("restitution", "friction", "kinetic_friction") if name in own}
+    return [{"name": "impact", "law": "impact", "parameters": impact},
+            *({"name": activation, "parameters": {"activation": activation}} for activation in ("predictive", "moreau"))]
+
+
 def studied(file):
     scene = json.loads(file.read_text())
     own = scene["interfaces"][0]["parameters"]
-    laws = [{"name": activation, "parameters": {"activation": activation}}
-            for activation in ("resolved", "predictive", "moreau")]
-    laws += penalties(own["restitution"], own.get("friction"))
+    laws = [*laws_beside(own), *penalties(own["restitution"], own.get("friction"))]
     first = scene["time"]["end"] / 60 / scene["time"]["dt"]  # 60 steps
     scene["study"] = {"first": first, "factor": 2.17, "levels": 13, "most_steps": MOST_STEPS, "repetitions": 3,
                       "laws": laws}
@@ -140,12 +145,14 @@ def ball(time, restitution, gravity=9.81):
     return 0.0
 
 
-def error_of_ball(ilaw, folder, restitution, activation, step):
+def error_of_ball(ilaw, folder, restitution, law, step):
     scene = json.loads(SCENES["ball_e1"].read_text())
     for key in ("exact", "converge"):
         scene.pop(key)
     scene["time"]["dt"] = step
-    scene["interfaces"][0]["parameters"] = {"restitution": restitution, "activation": activation}
+    own = {"law": "impact"} if law == "impact" else {"law": "contact", "parameters": {"activation": law}}
+    own.setdefault("parameters", {})["restitution"] = restitution
+    scene["interfaces"][0].update(own)
     call(ilaw, "run", scene, folder)
     error = size = 0.0
     for row in read(Path(folder) / "history.csv"):
@@ -159,9 +166,9 @@ def compare_with_print(ilaw, folder):
     rows = []
     for restitution in (1.0, 0.8):
         found = {name: errors for (name, e), errors in PUBLISHED.items() if e == restitution}
-        for activation in ("predictive", "moreau", "resolved"):
-            print("ball:", restitution, activation, flush=True)
-            found[activation] = [error_of_ball(ilaw, folder, restitution, activation, h) for h in PUBLISHED_STEPS]
+        for law in ("predictive", "moreau", "impact"):
+            print("ball:", restitution, law, flush=True)
+            found[law] = [error_of_ball(ilaw, folder, restitution, law, h) for h in PUBLISHED_STEPS]
         rows += [{"e": restitution, "scheme": name, **{f"h = {h:.0e}": f"{x:.2g}" for h, x in zip(PUBLISHED_STEPS, errors)}}
                  for name, errors in found.items()]
     write("impacts_published", rows)
@@ -177,7 +184,7 @@ BODIES = {
 
 
 def measure_bodies(ilaw, folder):
-    """Errors of u, and of v in brackets, of the finest runs; without a closed form against the finest of resolved."""
+    """Errors of u, and of v in brackets, of the finest runs; without a closed form against the finest of impact."""
     rows = []
     for name, sizes in BODIES.items():
         for restitution in (0.0, 1.0):
@@ -186,13 +193,12 @@ def measure_bodies(ilaw, folder):
             for interface in scene["interfaces"]:
                 interface.setdefault("parameters", {})["restitution"] = restitution
             scene["study"] = {**scene.get("study", {}), **sizes, "repetitions": 1}
-            scene["study"]["laws"] = [{"name": activation, "parameters": {"activation": activation}}
-                                      for activation in ("resolved", "predictive", "moreau")]
+            scene["study"]["laws"] = laws_beside(scene["interfaces"][0]["parameters"])
             call(ilaw, "study", scene, folder)
             finest = {run["law"]: run for run in read(Path(folder) / "study.csv")}
-            rows.append({"scene": name, "e": f"{restitution:g}", "steps": finest["resolved"]["steps"], **{
+            rows.append({"scene": name, "e": f"{restitution:g}", "steps": finest["impact"]["steps"], **{
                 law: f"{float(finest[law]['u_L2']):.2g} ({float(finest[law]['v_L1']):.2g})"
-                for law in ("predictive", "moreau", "resolved")}})
+                for law in ("predictive", "moreau", "impact")}})
     write("impacts_bodies", rows)
 
 

@@ -1,12 +1,14 @@
 // Cohesive zones: a bond that softens, with contact, friction and bounded damage rate. See cohesive.md.
 #include "softening.hpp"
 
-#include <ilaw/kit/bond.hpp>
+#include "../bond/bond.hpp"
+
 #include <ilaw/kit/heat.hpp>
 #include <ilaw/kit/plugin.hpp>
 
 namespace {
 
+using namespace bond_law;
 using namespace cohesive_law;
 
 constexpr const char* shape_choices[] = {"bilinear", "exponential", "camacho_ortiz"};

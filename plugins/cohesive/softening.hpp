@@ -118,7 +118,7 @@ struct softening {
   // soft * traction - stiff * opening is convex and falls: Newton's steps from the onset never pass the root.
   [[gnu::noinline]] V exponential_meets(secant<V> s) const {
     V opening = onset;
-    mask_of<V> active = opening == opening;
+    mask_of<V> active = all<V>();
     for (int k = 0; k < 60 && any(active); ++k) {
       const V left = exp(-decay * progress(opening)),
               steepness = steepest() * zero_unless(progress(opening) < 1.0, left);

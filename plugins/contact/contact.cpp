@@ -1,6 +1,5 @@
 // Signorini-Moreau contact with Newton restitution. See contact.md for the equations.
 #include <ilaw/kit.hpp>
-#include <ilaw/kit/resolved_impact.hpp>
 
 namespace {
 
@@ -18,7 +17,6 @@ struct contact {
           "Signorini-Moreau contact without friction: open nodes get no impulse, closed ones are pushed so that "
           "the normal velocity after the step is at least -e times the one before.",
       .inputs = reads_gap | reads_v_previous | reads_v_smooth,
-      .capabilities = can_store_energy,
       .permissions = may_skip_fresh | may_skip_free,
       .is_isotropic = true};
 
@@ -28,31 +26,12 @@ struct contact {
       "problem"};
 
   static constexpr parameter<contact> parameters[] = {restitution_parameter(&contact::restitution),
-                                                      resolving_activation_parameter(&contact::activation)};
+                                                      activation_parameter(&contact::activation)};
 
-  // Only where activation is resolved.
-  struct state {
-    V work;
-  };
-  static constexpr state_variable<state> state_variables[] = {waiting_work_variable(&state::work)};
   std::uint32_t inputs() const { return inputs_of_contact(card.inputs, restitution, activation); }
-  bool remembers() const { return activation == resolved; }
-  std::uint32_t capabilities() const { return remembers() ? can_store_energy : 0; }
 
   template <class Node>
-  status_of<V> step(Node& node) const requires has_memory<Node> {
-    const resolved_impact<V> impact = resolve_impact(node, restitution, node.state.work);
-    node.impulse.n = impact.impulse;
-    if (node.wants_energy) {
-      node.stored = positive_part(impact.work);
-      node.normal_gain = node.stored - positive_part(node.state.work);
-    }
-    node.state.work = impact.work;
-    return select(node.impulse.n > 0.0, status::closed, status::free);
-  }
-
-  template <class Node>
-  status_of<V> step(Node& node) const requires(!has_memory<Node>) {
+  status_of<V> step(Node& node) const {
     const contact_condition<V> condition = contact_at(node, restitution, activation);
     const V pressing = positive_part(-condition.excess / node.delassus.normal());
     node.impulse.n = zero_unless(condition.slack <= 0.0, pressing);

@@ -131,7 +131,7 @@ struct grain {
   void solve_scalar(const problem& p, answer& a) const { solve(p, a); }
   template <class Node>
   status_of<V> finish(Node& node, const answer& a) const {
-    return give(node, a, radius < 0.0);
+    return give(node, a, none<V>());
   }
 
  private:

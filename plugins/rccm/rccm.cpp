@@ -1,10 +1,12 @@
 // RCCM: adhesion that viscosity delays, with contact and friction. See rccm.md for the equations.
-#include <ilaw/kit/bond.hpp>
+#include "../bond/bond.hpp"
+
 #include <ilaw/kit/heat.hpp>
 #include <ilaw/kit/plugin.hpp>
 
 namespace {
 
+using namespace bond_law;
 using namespace ilaw::kit;
 
 template <class V>

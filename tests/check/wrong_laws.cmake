@@ -1,5 +1,5 @@
-# A law of the tree with one mistake, as libraries that tests check: name law file from to. The file is the law's
-# source or a header of the kit, "from" stands in it exactly once.
+# A law of the tree with one mistake, as libraries that tests check: name law file from to. The file is one of plugins/
+# or a header of the kit, "from" stands in it exactly once.
 function(ilaw_add_wrong_law name law file from to)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${file})
   file(READ ${PROJECT_SOURCE_DIR}/${file} text)
@@ -10,33 +10,36 @@ function(ilaw_add_wrong_law name law file from to)
   endif()
   string(REPLACE "${from}" "${to}" text "${text}")
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/${name})
-  set(source ${PROJECT_SOURCE_DIR}/plugins/${law}/${law}.cpp)
-  set(copy ${folder}/${law}.cpp)
-  if(file MATCHES "^api/include/(.*)")
-    set(copy ${folder}/${CMAKE_MATCH_1})
-  else()
-    set(source ${copy})
-  endif()
-  # A header that had the mistake before would stand in the way of the tree's.
-  file(GLOB_RECURSE old ${folder}/*.hpp)
+  string(REGEX REPLACE "^(api/include|plugins)/" "${folder}/" copy ${file})
+  # A header of the kit that had the mistake before would stand in the way of the tree's.
+  file(GLOB_RECURSE old ${folder}/ilaw/*.hpp)
   list(REMOVE_ITEM old ${copy})
   if(old)
     file(REMOVE ${old})
   endif()
+  foreach(part IN ITEMS ${law} bond)
+    file(GLOB sources ${PROJECT_SOURCE_DIR}/plugins/${part}/*.[ch]pp)
+    foreach(source IN LISTS sources)
+      file(RELATIVE_PATH place ${PROJECT_SOURCE_DIR}/plugins ${source})
+      if(NOT copy STREQUAL ${folder}/${place})
+        configure_file(${source} ${folder}/${place} COPYONLY)
+      endif()
+    endforeach()
+  endforeach()
   file(CONFIGURE OUTPUT ${copy} CONTENT "${text}" @ONLY)
-  add_library(${name} MODULE ${source})
-  target_include_directories(${name} BEFORE PRIVATE ${folder} ${PROJECT_SOURCE_DIR}/plugins/${law})
+  add_library(${name} MODULE ${folder}/${law}/${law}.cpp)
+  target_include_directories(${name} BEFORE PRIVATE ${folder})
   ilaw_compile_law(${name})
   set_target_properties(${name} PROPERTIES PREFIX "" SUFFIX ".so" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
   add_dependencies(check_test ${name})
 endfunction()
 
 # Wrong where H is transverse alone.
-ilaw_add_wrong_law(cohesive_transverse cohesive api/include/ilaw/kit/bonded_inertia.hpp
+ilaw_add_wrong_law(cohesive_transverse cohesive plugins/bond/bonded_inertia.hpp
                    "return {m.left_n * d.n, m.left_t * d.t1, m.left_t * d.t2};"
                    "return {m.left_n * d.n, m.left_n * d.t1, m.left_n * d.t2};")
 # Writes its state before its node is solved.
-ilaw_add_wrong_law(cohesive_asks cohesive api/include/ilaw/kit/bond.hpp
+ilaw_add_wrong_law(cohesive_asks cohesive plugins/bond/bond.hpp
                    "    if (any(open)) {\n      p = {as_full(node.delassus)"
                    "    if (any(open)) {\n      node.state.opening = select(open, node.state.position, node.state.opening);\n      p = {as_full(node.delassus)")
 # Loses adhesion per step, not per time.

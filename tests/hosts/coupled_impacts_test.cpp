@@ -1,4 +1,4 @@
-// Impacts at their instants (activation: "resolved") between bodies that several contacts move.
+// Impacts at their instants (the law impact) between bodies that several contacts move.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "coupled_scene.hpp"
 
@@ -16,17 +16,15 @@ namespace {
 
 using coupled_scene::h;
 
-ilaw::interface resolved(const char* law, ilaw_delassus_form form, ilaw::testing::Parameters parameters) {
-  parameters.texts["activation"] = "resolved";
-  return ilaw::testing::make_law(law, ilaw::testing::SetupBuilder(parameters, 3, form, ILAW_FRAME_GLOBAL));
+ilaw::interface impact(double mu, double restitution, ilaw_delassus_form form) {
+  return ilaw::testing::make_law(
+      "impact", ilaw::testing::SetupBuilder({{{"friction", mu}, {"restitution", restitution}}, {}}, 3, form,
+                                            ILAW_FRAME_GLOBAL));
 }
-ilaw::interface contact(double restitution) {
-  return resolved("contact", ILAW_DELASSUS_FULL, {{{"restitution", restitution}}, {}});
-}
+ilaw::interface contact(double restitution) { return impact(0.0, restitution, ILAW_DELASSUS_FULL); }
 // Between spheres, whose H is transverse.
 ilaw::interface friction(double mu, double restitution) {
-  return resolved("coulomb", ILAW_DELASSUS_TRANSVERSE,
-                  {{{"friction", mu}, {"restitution", restitution}}, {}});
+  return impact(mu, restitution, ILAW_DELASSUS_TRANSVERSE);
 }
 
 double stored_in(const coupled_scene::Scene& scene) {

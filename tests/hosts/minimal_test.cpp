@@ -165,7 +165,7 @@ class RandomScene {
 
   static constexpr std::pair<const char*, const char*> laws_[] = {  // the last two have no form in 1D
       {"contact", R"({"restitution": 0.4})"},
-      {"contact", R"({"restitution": 0.7, "activation": "resolved"})"},
+      {"impact", R"({"restitution": 0.7, "friction": 0.3})"},
       {"coulomb", R"({"friction": 0.4, "restitution": 0.3})"},
       {"cohesive", R"({"strength": 30.0, "toughness": 0.7, "friction": 0.2})"},
       {"postit", R"({"efficiency_decrease": 3.0, "adhesion_limit": "inf", "memory": 0.05})"},

@@ -21,7 +21,7 @@ TEST(Create, NamesTheParameterItsValueAndWhatIsAllowed) {
             "law 'contact': unknown parameter 'restituton': expected one of restitution, activation");
   EXPECT_EQ(refusal_of("contact", {{}, {{"activation", "early"}}}),
             "law 'contact': parameter 'activation' = \"early\" is not allowed: expected one of \"moreau\", "
-            "\"predictive\", \"resolved\"");
+            "\"predictive\"");
   EXPECT_EQ(
       refusal_of("contact", {{}, {{"restitution", "high"}}}),
       "law 'contact': parameter 'restitution' was given as a text (\"high\"): expected a number in [0, 1]");

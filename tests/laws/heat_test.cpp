@@ -85,10 +85,11 @@ std::vector<LawCase> rubbing_laws() {
   const auto law = [](const char* name, const std::map<std::string, double>& numbers) {
     return LawCase{name, name, {numbers, {{"activation", "moreau"}}}, {}};
   };
-  const auto broken = [](const char* name, const std::map<std::string, double>& numbers) {
+  const auto without_choice = [](const char* name, const std::map<std::string, double>& numbers) {
     return LawCase{name, name, {numbers, {}}, {}};
   };
   return {law("coulomb", {{"friction", 0.3}}),
+          without_choice("impact", {{"friction", 0.3}}),
           law("slip_weakening", {{"friction", 0.4}, {"dynamic_friction", 0.3}, {"critical_slip", 0.1}}),
           law("rate_and_state", {{"reference_friction", 0.3},
                                  {"direct_effect", 0.02},
@@ -97,12 +98,12 @@ std::vector<LawCase> rubbing_laws() {
                                  {"critical_slip", 0.01}}),
           law("table_friction", {{"friction", 0.3}}),
           law("rubber", {{"static_friction", 0.3}, {"peak_friction", 0.8}, {"peak_speed", 0.2}}),
-          broken("cohesive", {{"strength", 1.0}, {"toughness", 0.0}, {"friction", 0.3}}),
-          broken("rccm", {{"normal_stiffness", 1e3},
-                          {"tangential_stiffness", 1e3},
-                          {"adhesion_energy", 1.0},
-                          {"initial_intensity", 0.0},
-                          {"friction", 0.3}})};
+          without_choice("cohesive", {{"strength", 1.0}, {"toughness", 0.0}, {"friction", 0.3}}),
+          without_choice("rccm", {{"normal_stiffness", 1e3},
+                                  {"tangential_stiffness", 1e3},
+                                  {"adhesion_energy", 1.0},
+                                  {"initial_intensity", 0.0},
+                                  {"friction", 0.3}})};
 }
 class RubbingLaw : public ::testing::TestWithParam<LawCase> {
  protected:

@@ -149,7 +149,7 @@ TEST(LocalCoulomb, IsTheEnumerationInTwoDimensions) {
   EXPECT_GT(slips, 10000);
 }
 
-// H = diag(h_N, h_T, h_T): the sticking impulse, scaled back to the cone (De Saxce and Feng 1991).
+// H = diag(h_N, h_T, h_T): the sticking impulse, scaled back to the cone (Moreau 1988).
 TEST(LocalCoulomb, IsTheClosedFormWithoutCouplingAndAnisotropy) {
   Draw draw(4);
   for (int k = 0; k < 100000; ++k) {

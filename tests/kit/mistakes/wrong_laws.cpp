@@ -191,49 +191,10 @@ WRONG(initialize_for_initialise)
   void initialize(Node&) const {}
 };
 
-// the kit calls no 'capabilites': write 'capabilities'
-WRONG(capabilites_for_capabilities)
-  STEP
-  std::uint32_t capabilites() const { return 0; }
-};
-
-// the kit calls no 'conflicts': write 'conflict'
-WRONG(conflicts_for_conflict)
-  STEP
-  const char* conflicts() const { return nullptr; }
-};
-
 // the kit calls no 'prepared': write 'prepare'
 WRONG(prepared_for_prepare)
   STEP
   auto prepared(const step_sizes& s) const { return s.time; }
-};
-
-// the kit calls no 'answered': write 'finish'
-WRONG(answered_for_finish)
-  STEP
-  void answered() const {}
-};
-
-// the kit calls no 'solve_alone': write 'solve_scalar'
-WRONG(solve_alone_for_solve_scalar)
-  STEP
-  static void solve_alone() {}
-};
-
-// the kit calls no 'try_step': write 'step': it has branches that all nodes of a batch share, and any(mask)
-WRONG(tries_its_step)
-  STEP
-  template <class Node>
-  bool try_step(Node&) const {
-    return true;
-  }
-};
-
-// the kit calls no 'history_variable': write 'history'
-WRONG(history_variable_for_history)
-  STEP
-  static constexpr history_card history_variable{.name = "past"};
 };
 
 // the kit calls no 'is_isotropic': write .is_isotropic = true in the card
@@ -441,12 +402,6 @@ WRONG(asks_nothing)
   bool asks() const { return true; }
 };
 
-// remembers says which parameters need the state: the law has no struct state
-WRONG(remembers_nothing)
-  STEP
-  bool remembers() const { return true; }
-};
-
 // The compiler looks at each.
 #define SEEN(law) auto* const seen_##law = &detail::library_of<law>::describe
 SEEN(larger_state);
@@ -464,13 +419,7 @@ SEEN(member_without_parameter);
 SEEN(choice_per_node);
 SEEN(field_of_a_batch);
 SEEN(initialize_for_initialise);
-SEEN(capabilites_for_capabilities);
-SEEN(conflicts_for_conflict);
 SEEN(prepared_for_prepare);
-SEEN(answered_for_finish);
-SEEN(solve_alone_for_solve_scalar);
-SEEN(tries_its_step);
-SEEN(history_variable_for_history);
 SEEN(option_beside_the_card);
 SEEN(misspelt_option);
 SEEN(mutable_inputs);
@@ -494,4 +443,3 @@ SEEN(never_finished);
 SEEN(problem_with_a_number);
 SEEN(undecided);
 SEEN(asks_nothing);
-SEEN(remembers_nothing);

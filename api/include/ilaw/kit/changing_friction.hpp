@@ -159,7 +159,7 @@ void solve_changing_friction_by(const friction_problem<V>& p, const Mu& mu_at, c
 }
 template <class V, class Mu>
 mask_of<V> solve_changing_friction(const friction_problem<V>& p, const Mu& mu, changing_answer<V>& a) {
-  mask_of<V> left = p.contact.h[0] < 0.0;
+  mask_of<V> left = none<V>();
   solve_changing_friction_by(
       p, mu, a, [&](const friction_problem<V>& tried, friction_answer<V>& found, mask_of<V> needed) {
         left = left | (solve_friction(tried, found) & needed);

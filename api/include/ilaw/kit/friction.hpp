@@ -55,6 +55,16 @@ constexpr parameter<Law> friction_parameter(typename number_of_law<Law>::type La
           .infinity_allowed = true};
 }
 
+// Whether the node slipped in the last step: faster than the rounding of a contact that stuck, which leaves
+// with a few ulp of the free velocity.
+template <class Node>
+ILAW_KIT_INLINE mask_of<number_of<Node>> has_slipped(const Node& node) {
+  constexpr double at_rest = 0x1p-26;
+  const auto free = node.v_free.scaled_tangential_length();
+  const auto slip = free.down * node.v_previous.tangential_length();
+  return slip * slip > at_rest * at_rest * free.square;
+}
+
 // ---- closed form
 
 // A number in [0, 1], not yet divided.
@@ -118,7 +128,7 @@ ILAW_KIT_INLINE auto pressing_impulse(const Delassus& h, const contact_problem<V
 
 // Solves q + H r = u, 0 <= u_N _|_ r_N >= 0, |r_T| <= mu r_N with r_T opposite to u_T where u_T != 0, in
 // closed form for H = diag(h_N, h_T, h_T): the normal row stands alone (Signorini), and the slip u_T is
-// parallel to q_T, so that sliding scales the sticking impulse back to the cone (de Saxce and Feng 1991).
+// parallel to q_T, so that sliding scales the sticking impulse back to the cone (Moreau 1988).
 // Gives the impulse, returns the status.
 template <class Node, class Vector>
 ILAW_KIT_INLINE status_of<number_of<Node>> apply_isotropic_friction(Node& node,

@@ -18,8 +18,6 @@
 //         finish(node, answer)               the status with the answer
 //         asks(), asks(bool is_transverse)   whether these parameters need the solver, where step and ask both
 //                                            serve a node
-//         remembers()                        whether these parameters need the state; step is then called with
-//                                            nodes of both kinds (has_memory)
 //         prepare(step_sizes)                numbers that all nodes of a batch share; node.prepared
 //         initialise(node)                   first state (default: zeros)
 //         conflict()                         why parameters do not go together, or null
@@ -256,13 +254,6 @@ using state_t = typename detail::state_of<Law>::type;
 template <class Law>
 inline constexpr int state_numbers =
     has_state<Law> ? static_cast<int>(sizeof(state_t<Law>) / sizeof(typename number_of_law<Law>::type)) : 0;
-template <class Law>
-ILAW_KIT_INLINE bool remembers(const Law& law) {
-  if constexpr (requires { law.remembers(); })
-    return law.remembers();
-  else
-    return has_state<Law>;
-}
 // See heat.hpp.
 template <class Law>
 concept gives_heat = requires(const Law& law) {

@@ -86,9 +86,8 @@ using input_t = std::conditional_t<(Law::card.inputs & Input) != 0, Declared, Un
 struct spinless {};
 
 // A step reads the first part and writes the second. Law: with its number type. Vector: vector<V>, or
-// projected<V> for isotropic laws in the host's axes. Delassus: transverse<V> or full<V>. State: stateless
-// where the law's parameters need none.
-template <class Law, class Vector, class Delassus, class State = state_t<Law>>
+// projected<V> for isotropic laws in the host's axes. Delassus: transverse<V> or full<V>.
+template <class Law, class Vector, class Delassus>
 struct node {
   using number = typename number_of_law<Law>::type;
   using V = number;
@@ -113,9 +112,9 @@ struct node {
   vector<V> earlier = {};  // what the law's window sums up to before the step
 
   Vector impulse = {};
-  spin_type moment = {};  // m_N and m x n likewise
-  State state = {};       // comes in as it was, leaves as it is
-  V stored = 0.0;         // energy stored by the interface at the end of the step
+  spin_type moment = {};    // m_N and m x n likewise
+  state_t<Law> state = {};  // comes in as it was, leaves as it is
+  V stored = 0.0;           // energy stored by the interface at the end of the step
   // Energy that the step added to it, by the normal and by the tangential motion; the rest of the work is
   // dissipated.
   V normal_gain = 0.0, tangential_gain = 0.0;
@@ -133,15 +132,13 @@ template <class Node>
 using number_of = typename Node::number;
 
 // Kinds of nodes that laws tell apart when they are compiled: whether H = diag(h_N, h_T, h_T) at all of them,
-// whether their vectors have tangential components with names, whether they have the law's state, and spins.
+// whether their vectors have tangential components with names, and spins.
 template <class Node>
 inline constexpr bool is_transverse = is_transverse_form<std::remove_cvref_t<decltype(Node::delassus)>>;
 template <class Node>
 inline constexpr bool has_tangents =
     std::is_same_v<std::remove_cvref_t<decltype(Node::v_free)>, vector<number_of<Node>>>;
 
-template <class Node>
-inline constexpr bool has_memory = !std::is_same_v<decltype(Node::state), stateless>;
 template <class Node>
 inline constexpr bool has_spins = has_spin_form<std::remove_cvref_t<decltype(Node::delassus)>>;
 

@@ -363,6 +363,16 @@ ILAW_KIT_INLINE double lane_of(pack_of<Registers> x, int lane) {
 
 }  // namespace detail
 
+// No lane, and all of them.
+template <class V>
+ILAW_KIT_INLINE mask_of<V> none() {
+  return detail::mask_from<V>(0U);
+}
+template <class V>
+ILAW_KIT_INLINE mask_of<V> all() {
+  return detail::mask_from<V>(~0U);
+}
+
 // f of numbers, in each lane.
 template <class V, class Function, class... More>
 V lane_by_lane(Function f, V first, More... more) {

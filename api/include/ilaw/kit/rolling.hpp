@@ -62,7 +62,7 @@ ILAW_KIT_INLINE rolling_result<V, Vector> solve_rolling(const rolling_problem<V,
     a.q = f.against(0.0, select(length > p.most_q * j, p.most_q / length, 1.0 / j));
     a.slip = p.v - p.k * a.q;
     speed = a.slip.tangential_length();
-    return root_trial<V>{x - speed, 1.0, 1.0, 1.0, V(0.0) != V(0.0)};
+    return root_trial<V>{x - speed, 1.0, 1.0, 1.0, none<V>()};
   };
   trial(stuck);
   if (const mask_of<V> slips = speed > stuck; any(slips))

@@ -25,7 +25,7 @@ ILAW_KIT_INLINE V root_between(V low, V high, V x, mask_of<V> active, Function f
   constexpr int most_steps = 24, most_bisections = 80;
   constexpr double rounding = 0x1p-50, close = 0x1p-64;  // close: of the product of the last two errors
   V before = x, value_before = 0.0;
-  mask_of<V> is_lost = active & !active;
+  mask_of<V> is_lost = none<V>();
   for (int k = 0;; ++k) {
     const root_trial<V> t = f(x);
     is_lost = (is_lost & !active) | (active & (t.value != t.value));

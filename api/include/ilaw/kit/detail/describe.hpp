@@ -68,14 +68,13 @@ inline constexpr std::size_t state_variable_count = [] {
   return count;
 }();
 template <class Law>
-constexpr auto abi_state_variables(int dimension, std::uint64_t history_size, bool remembers = true) {
+constexpr auto abi_state_variables(int dimension, std::uint64_t history_size) {
   std::array<ilaw_state_variable, state_variable_count<Law>> result{};
   std::size_t i = 0;
   if constexpr (has_state<Law>)
     for (const auto& v : Law::state_variables)
-      result[i++] = abi_state_variable(
-          v, v.member.kind(),
-          remembers ? static_cast<std::uint64_t>(v.member.components(dimension)) : std::uint64_t{0});
+      result[i++] =
+          abi_state_variable(v, v.member.kind(), static_cast<std::uint64_t>(v.member.components(dimension)));
   if constexpr (has_history<Law>)
     result[i] = abi_state_variable(Law::history, ILAW_KIND_HISTORY, history_size);
   return result;

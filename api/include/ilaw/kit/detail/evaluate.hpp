@@ -14,28 +14,25 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // Null: there is none for floats, which are then converted by blocks: a solver takes longer than that, and of
 // a step beside one little is to be gained where a state of doubles moves with it.
-template <class Law, class Number, template <class> class Frame, template <class> class Delassus,
-          bool Remembers = has_state<Law>>
+template <class Law, class Number, template <class> class Frame, template <class> class Delassus>
 typename batch_walk<Number>::run_function loop_of(const instance<Law>& made) {
-  if constexpr (Remembers && requires { made.law.remembers(); })
-    if (made.states == 0) return loop_of<Law, Number, Frame, Delassus, false>(made);
   using V = pack;
-  using plain = kernel<Law, V, Number, Frame, Delassus, Remembers>;
+  using plain = kernel<Law, V, Number, Frame, Delassus>;
   using Wide = law_on_t<Law, V>;
   using node_type = typename plain::node_type;
   constexpr bool has_solver = can_ask<Wide, node_type>, is_chosen = can_choose<Wide, node_type>;
   if constexpr (std::is_same_v<Number, float> && has_solver &&
-                (Remembers || has_history<Law> || !is_chosen)) {
+                (has_state<Law> || has_history<Law> || !is_chosen)) {
     return nullptr;
   } else if constexpr (has_solver && !is_chosen) {
-    return solver_kernel<Law, V, Number, Frame, Delassus, Remembers>::run;
+    return solver_kernel<Law, V, Number, Frame, Delassus>::run;
   } else {
     if constexpr (has_solver)
       if (made.asks) {
         if constexpr (std::is_same_v<Number, float>)
           return nullptr;
         else
-          return solver_kernel<Law, V, Number, Frame, Delassus, Remembers>::run;
+          return solver_kernel<Law, V, Number, Frame, Delassus>::run;
       }
     static_assert(
         requires(const Wide& law, node_type& n) { law.step(n); },

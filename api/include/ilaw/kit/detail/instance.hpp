@@ -311,15 +311,14 @@ class instance_builder {
       made_.window = made_.law.window();
       made_.history_size = window::doubles(made_.window);
     }
-    const bool remembers = kit::remembers(made_.law);
     const auto declared = abi_state_variables<Law>(static_cast<int>(made_.dimension),
-                                                   static_cast<std::uint64_t>(made_.history_size), remembers);
+                                                   static_cast<std::uint64_t>(made_.history_size));
     for (const ilaw_state_variable& v : declared) append(v);
     made_.carries_frame = made_.frame == ILAW_FRAME_GLOBAL && made_.dimension == 3 && !made_.has_tangent &&
-                          (made_.history_size > 0 || (remembers && has_vector_state<Law>()));
+                          (made_.history_size > 0 || has_vector_state<Law>());
     if (made_.carries_frame)
       for (const history_card& v : frame_variables) append(abi_state_variable(v, ILAW_KIND_AXIS, 3));
-    made_.states = remembers ? state_numbers<Law> : 0;
+    made_.states = state_numbers<Law>;
     made_.state_entries = state_entries<Law>[made_.dimension].data();
     made_.frame_offset = static_cast<std::int64_t>(made_.state_size) - (made_.carries_frame ? frame_size : 0);
     made_.history_offset = made_.frame_offset - made_.history_size;

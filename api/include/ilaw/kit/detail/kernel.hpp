@@ -17,16 +17,14 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // ---- a pack from end to end
 
-// Remembers: whether the nodes have the law's state.
-template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus,
-          bool Remembers = has_state<Law>>
+template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus>
 struct kernel {
   using Wide = law_on_t<Law, V>;
   using frame_type = Frame<V>;
   using vector_type = typename frame_type::vector_type;
   using H = Delassus<V>;
-  using state_type = std::conditional_t<Remembers, state_t<Wide>, stateless>;
-  using node_type = node<Wide, vector_type, H, state_type>;
+  using state_type = state_t<Wide>;
+  using node_type = node<Wide, vector_type, H>;
   using spin_type = typename node_type::spin_type;
   static constexpr bool spins = has_spins<node_type>;
   using view_type = view<Number>;
@@ -36,13 +34,12 @@ struct kernel {
   static constexpr bool careful = view_type::is_careful;
   using checks_type = checks<V, careful>;
   static constexpr bool is_projected = std::is_same_v<frame_type, normal_frame<V>>;
-  using careful_kernel =
-      std::conditional_t<is_projected, kernel<Law, V, copied, normal_frame, Delassus, Remembers>,
-                         kernel<Law, V, copied, either_frame, Delassus, Remembers>>;
-  static constexpr int width = lanes_of<V>, states = Remembers ? state_numbers<Law> : 0;
+  using careful_kernel = std::conditional_t<is_projected, kernel<Law, V, copied, normal_frame, Delassus>,
+                                            kernel<Law, V, copied, either_frame, Delassus>>;
+  static constexpr int width = lanes_of<V>, states = state_numbers<Law>;
   static constexpr bool may_pull = (Law::card.capabilities & ILAW_CAN_ADHERE) != 0;
   static constexpr bool stays_in_reach = (Law::card.permissions & ILAW_MAY_SKIP_FRESH) != 0 &&
-                                         !has_history<Law> && !Remembers && reads<Law>(reads_gap);
+                                         !has_history<Law> && !has_state<Law> && reads<Law>(reads_gap);
   static constexpr bool can_carry = frame_type::has_axes && (has_history<Law> || has_vector_state<Law>());
 
   // ---- load
@@ -82,7 +79,7 @@ struct kernel {
   ILAW_KIT_INLINE static loaded load_pack(const prepared_t<Wide>& prepared, const view_type& b,
                                           std::int64_t i, checks_type& c, bool is_checked = false) {
     frame_type frame;
-    mask framed = V(0.0) == V(0.0), known = framed;
+    mask framed = all<V>(), known = framed;
     load_frame(frame, b, i, c, framed);
     c.frame(framed);
     V numbers = 0.0;  // a product of all of a row, whichever lane they belong to
@@ -342,7 +339,7 @@ struct kernel {
       detail::store(p.node.impulse.n, b.given[0] + i);
       detail::store(p.node.impulse.t1, b.given[1] + i);
       detail::store(p.node.impulse.t2, b.given[2] + i);
-      mask adds = V(0.0) != V(0.0), clears = adds;
+      mask adds = none<V>(), clears = adds;
 #pragma GCC unroll 8
       for (ilaw_status s = ILAW_FREE; s <= ILAW_HEALED; ++s) {
         const mask is = status.code() == V(s);
@@ -408,7 +405,7 @@ struct kernel {
     if constexpr (careful)
       return mask_from<V>((1U << b.count) - 1);
     else
-      return V(0.0) == V(0.0);
+      return all<V>();
   }
   static void add_bad(tally& found, const checks_type& c, mask nodes, std::int64_t i) {
     const unsigned bad = mask_bits(c.bad() & nodes);

@@ -263,8 +263,6 @@ constexpr bool passes_names() {
                  "a law needs template <class Node> status_of<V> step(Node& node) const")
   ILAW_KIT_CHECK(names_state<Law> == names_state_variables<Law>,
                  "a memory is struct state and static constexpr state_variable<state> state_variables[]")
-  ILAW_KIT_CHECK(!names_remembers<Law> || names_state<Law>,
-                 "remembers says which parameters need the state: the law has no struct state")
   ILAW_KIT_CHECK(has_whole_solver<Law>(),
                  "a solver is problem, answer, ask, solve, solve_scalar and finish: one of them is missing")
   ILAW_KIT_CHECK(!names_asks<Law> || (names_step<Law> && names_ask<Law>),
@@ -321,7 +319,6 @@ constexpr bool passes_members() {
             { law.asks(true) } -> std::same_as<bool>;
           },
       "asks must be bool asks() const or bool asks(bool is_transverse) const")
-  ILAW_KIT_FUNCTION(remembers, bool, "bool remembers() const")
   ILAW_KIT_FUNCTION(conflict, const char*, "const char* conflict() const")
   ILAW_KIT_FUNCTION(inputs, std::uint32_t, "std::uint32_t inputs() const")
   ILAW_KIT_FUNCTION(capabilities, std::uint32_t, "std::uint32_t capabilities() const")

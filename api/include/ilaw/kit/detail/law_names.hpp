@@ -33,47 +33,18 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 ILAW_KIT_NAME(card); ILAW_KIT_NAME(references); ILAW_KIT_NAME(parameters); ILAW_KIT_NAME(state);
 ILAW_KIT_NAME(state_variables); ILAW_KIT_NAME(history); ILAW_KIT_NAME(amounts); ILAW_KIT_NAME(step);
 ILAW_KIT_NAME(problem); ILAW_KIT_NAME(answer); ILAW_KIT_NAME(ask); ILAW_KIT_NAME(solve);
-ILAW_KIT_NAME(solve_scalar); ILAW_KIT_NAME(finish); ILAW_KIT_NAME(asks); ILAW_KIT_NAME(remembers);
+ILAW_KIT_NAME(solve_scalar); ILAW_KIT_NAME(finish); ILAW_KIT_NAME(asks);
 ILAW_KIT_NAME(prepare); ILAW_KIT_NAME(initialise); ILAW_KIT_NAME(conflict); ILAW_KIT_NAME(inputs);
 ILAW_KIT_NAME(capabilities); ILAW_KIT_NAME(permissions); ILAW_KIT_NAME(tells_tangents_apart);
 ILAW_KIT_NAME(stable_velocity_step); ILAW_KIT_NAME(window); ILAW_KIT_NAME(adds_to_window); ILAW_KIT_NAME(clears_window);
 ILAW_KIT_NAME(extension);
 
 #define ILAW_KIT_SPELLINGS(spelling) \
-  spelling(reference, "'references'") \
-  spelling(params, "'parameters'") \
-  spelling(states, "'state'") \
-  spelling(state_variable, "'state_variables'") spelling(variables, "'state_variables'") \
-  spelling(history_variable, "'history'") spelling(histories, "'history'") \
-  spelling(amount, "'amounts'") \
-  spelling(steps, "'step'") spelling(do_step, "'step'") \
-  spelling(try_step, "'step': it has branches that all nodes of a batch share, and any(mask)") \
-  spelling(in_form, "'step': it has branches that all nodes of a batch share") \
-  spelling(problems, "'problem'") \
-  spelling(answers, "'answer'") \
-  spelling(answered, "'finish'") spelling(finished, "'finish'") spelling(finishes, "'finish'") \
-  spelling(solves, "'solve'") \
-  spelling(solve_alone, "'solve_scalar'") spelling(solve_one, "'solve_scalar'") \
-  spelling(needs_solver, "'asks'") \
-  spelling(prepared, "'prepare'") spelling(prepares, "'prepare'") \
+  spelling(params, "'parameters'") spelling(state_variable, "'state_variables'") \
   spelling(initialize, "'initialise'") spelling(init, "'initialise'") \
-  spelling(initialises, "'initialise'") \
-  spelling(conflicts, "'conflict'") \
-  spelling(input, "'inputs'") \
-  spelling(capabilites, "'capabilities'") spelling(capability, "'capabilities'") \
-  spelling(permission, "'permissions'") spelling(permisions, "'permissions'") \
-  spelling(tell_tangents_apart, "'tells_tangents_apart'") \
-  spelling(tells_tangents, "'tells_tangents_apart'") \
-  spelling(stable_step, "'stable_velocity_step'") spelling(stable_time_step, "'stable_velocity_step'") \
-  spelling(windows, "'window'") spelling(window_in, "'window'") \
-  spelling(add_to_window, "'adds_to_window'") \
-  spelling(clear_window, "'clears_window'") \
-  spelling(extensions, "'extension'") \
-  spelling(is_isotropic, ".is_isotropic = true in the card") \
-  spelling(names_tangents, ".is_isotropic in the card") \
-  spelling(dimensions, ".dimensions in the card") \
-  spelling(delassus_forms, ".delassus_forms in the card") \
-  spelling(state_version, ".state_version in the card")
+  spelling(do_step, "'step'") spelling(prepared, "'prepare'") \
+  spelling(stable_step, "'stable_velocity_step'") \
+  spelling(is_isotropic, ".is_isotropic = true in the card")
 // clang-format on
 ILAW_KIT_SPELLINGS(ILAW_KIT_SPELLING)
 

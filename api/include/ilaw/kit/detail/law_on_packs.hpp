@@ -85,7 +85,7 @@ template <class Wide, class Number>
 template <class Wide, class Law, class Number>
 [[gnu::noinline]] auto take_parameters(Wide& own, const Law& law, const view<Number>& b, std::int64_t i) {
   using V = typename number_of_law<Wide>::type;
-  mask_of<V> good = V(0.0) == V(0.0);
+  mask_of<V> good = all<V>();
   for (int k = 0; k < parameter_count<Law>; ++k)
     if (Wide::parameters[k].member.may_vary() && b.parameters[k]) {
       const V given = load<V>(b.parameters[k] + i);

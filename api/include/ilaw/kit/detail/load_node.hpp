@@ -25,7 +25,7 @@ struct checks {
 template <class V>
 struct checks<V, true> {
   V code = 0.0;
-  mask_of<V> framed = V(0.0) == V(0.0);
+  mask_of<V> framed = all<V>();
 
   ILAW_KIT_INLINE void require(mask_of<V> good, reason why) {
     code = select((code == 0.0) & (!good), V(static_cast<double>(why)), code);

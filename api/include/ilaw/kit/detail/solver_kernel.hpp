@@ -202,10 +202,9 @@ ILAW_KIT_APART auto ask_apart(const Wide& law, Node& node, typename Wide::proble
 
 // ---- the loop
 
-template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus,
-          bool Remembers = has_state<Law>>
-struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
-  using base = kernel<Law, V, Number, Frame, Delassus, Remembers>;
+template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus>
+struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
+  using base = kernel<Law, V, Number, Frame, Delassus>;
   using base::careful;
   using base::width;
   using typename base::checks_type;
@@ -216,8 +215,8 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
   using typename base::view_type;
   using typename base::Wide;
   using careful_kernel =
-      std::conditional_t<base::is_projected, solver_kernel<Law, V, copied, normal_frame, Delassus, Remembers>,
-                         solver_kernel<Law, V, copied, either_frame, Delassus, Remembers>>;
+      std::conditional_t<base::is_projected, solver_kernel<Law, V, copied, normal_frame, Delassus>,
+                         solver_kernel<Law, V, copied, either_frame, Delassus>>;
   using problem = typename Wide::problem;
   using answer = typename Wide::answer;
   using problems_type = open_problems<Law>;
@@ -247,7 +246,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
         return false;
     node_type closed = as_it_came(p.node);
     problem own;
-    kit::asked<V> asked{mask_from<V>(0U), status::free};
+    kit::asked<V> asked{none<V>(), status::free};
     if (!at.finishing || all.open[at.k] != all_of_pack) {
       if constexpr (careful)
         asked = ask_apart(law, closed, own);

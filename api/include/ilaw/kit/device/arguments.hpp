@@ -8,12 +8,11 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// Which kernel of a law serves an instance. Parameters may decide whether the law has its state, and whether
-// it needs the solver: part says which of both the kernel has.
+// Which kernel of a law serves an instance. Parameters may decide whether the law needs the solver.
 enum class device_numbers { of_double, of_float };
 enum class device_frame { local, normal, axes };
 enum class device_form { transverse, full };
-enum class device_part { plain, memory, solver, memory_and_solver };
+enum class device_part { plain, solver };
 struct device_variant {
   device_numbers numbers;
   device_frame frame;
@@ -23,8 +22,7 @@ struct device_variant {
 
 // clang-format off
 #define ILAW_KIT_DEVICE_PARTS(kernel, numbers, frame, form)                                   \
-  kernel(numbers, frame, form, plain) kernel(numbers, frame, form, memory)                    \
-  kernel(numbers, frame, form, solver) kernel(numbers, frame, form, memory_and_solver)
+  kernel(numbers, frame, form, plain) kernel(numbers, frame, form, solver)
 #define ILAW_KIT_DEVICE_FORMS(kernel, numbers)                                                \
   ILAW_KIT_DEVICE_PARTS(kernel, numbers, local, transverse)                                   \
   ILAW_KIT_DEVICE_PARTS(kernel, numbers, normal, transverse)                                  \
@@ -88,25 +86,18 @@ struct device_loop {
   template <class V>
   using delassus = std::conditional_t<Variant.form == device_form::full, full<V>, transverse<V>>;
 
-  static constexpr bool remembers =
-      Variant.part == device_part::memory || Variant.part == device_part::memory_and_solver;
-  static constexpr bool solves =
-      Variant.part == device_part::solver || Variant.part == device_part::memory_and_solver;
+  static constexpr bool solves = Variant.part == device_part::solver;
   static constexpr bool is_full = Variant.form == device_form::full;
   static constexpr bool is_served =
       is_full ? serves_full<Law> && Variant.frame != device_frame::normal
               : serves_transverse<Law> && (Variant.frame != device_frame::normal || needs_no_tangents<Law>);
   template <class Number, class V = double>
-  using kernel_on = kernel<Law, V, Number, frame, delassus, remembers>;
+  using kernel_on = kernel<Law, V, Number, frame, delassus>;
   template <class Number, class V = double>
-  using solver_kernel_on = solver_kernel<Law, V, Number, frame, delassus, remembers>;
+  using solver_kernel_on = solver_kernel<Law, V, Number, frame, delassus>;
   using node_type = typename kernel_on<double>::node_type;
-  static constexpr bool has_memory =
-      remembers ? has_state<Law> : !has_state<Law> || requires(const Law& law) {
-    law.remembers();
-  };
   static constexpr bool has_solver = can_ask<Law, node_type> ? solves || can_choose<Law, node_type> : !solves;
-  static constexpr bool exists = is_served && serves_devices<Law> && has_memory && has_solver;
+  static constexpr bool exists = is_served && serves_devices<Law> && has_solver;
 };
 
 }  // namespace ilaw::kit::detail

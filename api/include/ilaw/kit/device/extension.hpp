@@ -81,12 +81,10 @@ const char* ILAW_CALL device_kernel_name(const ilaw_instance* opaque, const char
   const char* wrong = not_served(made);
   if (reason) *reason = wrong;
   if (wrong) return nullptr;
-  const bool remembers = has_state<Law> && kit::remembers(made.law);
   for (const bool solves : {made.asks, !made.asks})  // the other where these nodes leave no choice
     for (std::size_t k = 0; k < std::size(device_names); ++k) {
       const device_variant& v = device_names[k].variant;
-      const device_part part = remembers ? (solves ? device_part::memory_and_solver : device_part::memory)
-                                         : (solves ? device_part::solver : device_part::plain);
+      const device_part part = solves ? device_part::solver : device_part::plain;
       if (has_device_kernel<Law>[k] &&
           (v.numbers == device_numbers::of_float) == (made.numbers == ILAW_NUMBERS_FLOAT) &&
           (v.form == device_form::transverse) == made.is_transverse() && v.frame == device_frame_of(made) &&

@@ -1,13 +1,14 @@
 // bond_step.hpp - one step of a node with a bond (bond.hpp), contact and friction: its motion for a mean
 // stiffness of the bond.
-// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/bonded_inertia.hpp>
 #include <ilaw/kit/friction.hpp>
 #include <ilaw/kit/rigid_bond.hpp>
+#include "bonded_inertia.hpp"
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace bond_law::inline ILAW_KIT_LEVEL {
+
+using namespace ilaw::kit;
 
 // ---- problem and answer
 
@@ -226,4 +227,4 @@ struct bond_result {
   ILAW_KIT_INLINE explicit bond_result(V before) : memory(before) {}
 };
 
-}  // namespace ilaw::kit
+}  // namespace bond_law

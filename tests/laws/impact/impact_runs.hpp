@@ -1,12 +1,12 @@
-// resolved_friction.hpp - what the tests of activation "resolved" with friction share.
+// impact_runs.hpp - what the tests of impacts with friction share.
 #pragma once
 
 #include "support/law_runner.hpp"
 
 namespace ilaw::testing {
 
-inline Parameters resolved(double friction, double restitution) {
-  return {{{"friction", friction}, {"restitution", restitution}}, {{"activation", "resolved"}}};
+inline Parameters rough(double friction, double restitution) {
+  return {{{"friction", friction}, {"restitution", restitution}}, {}};
 }
 
 inline void expect_in_cone(const Vector& r, double friction) {

@@ -1,16 +1,12 @@
 // bonded_inertia.hpp - the inertia of a node that a bond (bond.hpp) holds.
-// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ilaw/kit/law.hpp>
 #include <ilaw/kit/symmetric.hpp>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace bond_law::inline ILAW_KIT_LEVEL {
 
-template <class V>
-ILAW_KIT_INLINE mask_of<V> none() {
-  return detail::mask_from<V>(0U);
-}
+using namespace ilaw::kit;
 
 // Values that all nodes share. weight: of the tangential opening, see W; root: its square root.
 template <class V>
@@ -124,4 +120,4 @@ class bonded_inertia<V, full<V>> {
   full<V> a_;
 };
 
-}  // namespace ilaw::kit
+}  // namespace bond_law

@@ -1,6 +1,6 @@
-// activation: "resolved" with friction, through the ABI: its energy, its limits, its state. The proof is in
+// Impacts with friction, through the ABI: energy, limits and forms of H. The proof is in
 // docs/theory/resolved_impact.md.
-#include "resolved_friction.hpp"
+#include "impact_runs.hpp"
 
 #include "support/law_batch.hpp"
 
@@ -12,7 +12,7 @@ namespace {
 // A mass on springs of different h omega against a rough stop. The energy of a step is that of the scheme,
 // and what the law stores.
 double largest_gain(const Body& body, double h_omega, double h_omega_t, double middle, int steps) {
-  NodeRun node("coulomb", resolved(body.friction, body.restitution), h_omega);
+  NodeRun node("impact", rough(body.friction, body.restitution), h_omega);
   double before = INFINITY, gained = -INFINITY, size = 0.0;
   const double ratio = h_omega_t / h_omega * (h_omega_t / h_omega);
   struct {
@@ -38,7 +38,7 @@ double largest_gain(const Body& body, double h_omega, double h_omega_t, double m
   return gained / size;
 }
 
-TEST(ResolvedFriction, NeverGainsUpToTheCriticalStep) {
+TEST(RoughImpact, NeverGainsUpToTheCriticalStep) {
   for (const double restitution : {1.0, 0.8, 0.3})
     for (const double friction : {0.1, 1.0, inf_value})
       for (const double h_omega : {0.1, 0.5, 1.0, 1.5, 1.9, 1.999})
@@ -48,19 +48,19 @@ TEST(ResolvedFriction, NeverGainsUpToTheCriticalStep) {
                 << "mu " << friction << ", e " << restitution << ", h w " << h_omega << " and " << h_omega_t;
 }
 
-TEST(ResolvedFriction, NeverGainsInAMillionSteps) {
+TEST(RoughImpact, NeverGainsInAMillionSteps) {
   for (const double h_omega : {0.1, 0.5, 1.0, 1.5, 1.9, 1.999})
     EXPECT_LE(largest_gain({0.01, 1.0}, h_omega, 0.7 * h_omega, 0.3, 1000000), 1e-14) << "h w " << h_omega;
 }
 
 // Whatever the velocities, forces, steps and inverse masses: the impulse is in the cone, the parts are the
 // work, and none is negative.
-TEST(ResolvedFriction, MakesNoEnergyWhateverMovesIt) {
+TEST(RoughImpact, MakesNoEnergyWhateverMovesIt) {
   Random random(3);
   int waiting = 0, sticks = 0;
   for (const double friction : {0.1, 1.0, inf_value})
     for (const double restitution : {0.05, 0.4, 0.9, 1.0}) {
-      NodeRun node("coulomb", resolved(friction, restitution), 1e-3, ILAW_DELASSUS_TRANSVERSE);
+      NodeRun node("impact", rough(friction, restitution), 1e-3, ILAW_DELASSUS_TRANSVERSE);
       double stored = 0.0;
       for (int k = 0; k < 50000; ++k) {
         const Vector before = k % 3 == 0 ? node.v : random.vector();
@@ -96,10 +96,10 @@ TEST(ResolvedFriction, MakesNoEnergyWhateverMovesIt) {
 
 // ---- its limits, its state
 
-TEST(ResolvedFriction, IsPredictiveWithoutRestitution) {
+TEST(RoughImpact, IsPredictiveWithoutRestitution) {
   Random random(5);
   for (const double friction : {0.3, inf_value}) {
-    NodeRun node("coulomb", resolved(friction, 0.0)), other("coulomb", {{{"friction", friction}}, {}});
+    NodeRun node("impact", rough(friction, 0.0)), other("coulomb", {{{"friction", friction}}, {}});
     for (int k = 0; k < 50000; ++k) {
       const double scale = std::pow(10.0, k % 2 ? random(-100.0, 100.0) : 0.0);
       node.gap = k % 10 == 0 ? 0.0 : 1e-3 * scale * random();
@@ -112,29 +112,8 @@ TEST(ResolvedFriction, IsPredictiveWithoutRestitution) {
   }
 }
 
-TEST(ResolvedFriction, RefusesWhatItDoesNotKnow) {
-  const auto refused = [](const std::string& name, double value) {
-    Parameters parameters = resolved(0.5, 0.5);
-    parameters.numbers[name] = value;
-    return refusal_of("coulomb", parameters);
-  };
-  EXPECT_EQ(
-      refused("friction_2", 0.4),
-      "law 'coulomb': 'activation' resolved has one coefficient: no 'friction_2'; found friction_2 = 0.4, "
-      "activation = \"resolved\"");
-  EXPECT_EQ(refused("tangential_restitution", 0.1),
-            "law 'coulomb': 'activation' resolved has no 'tangential_restitution'; found "
-            "tangential_restitution = 0.1, activation = \"resolved\"");
-  EXPECT_EQ(refused("friction_2", 0.5), "not refused");
-  EXPECT_EQ(refused("kinetic_friction", 0.4), "not refused");
-  Parameters falling = resolved(0.5, 0.5);
-  falling.numbers["kinetic_friction"] = 0.4;
-  falling.numbers["decay"] = 2.0;
-  EXPECT_EQ(refusal_of("coulomb", falling),
-            "law 'coulomb': 'activation' resolved has 'kinetic_friction' at once: no 'decay'; found "
-            "kinetic_friction = 0.4, decay = 2, activation = \"resolved\"");
-
-  NodeRun node("coulomb", resolved(0.5, 0.5), 1e-3, ILAW_DELASSUS_FULL);
+TEST(RoughImpact, RefusesAnHThatCouples) {
+  NodeRun node("impact", rough(0.5, 0.5), 1e-3, ILAW_DELASSUS_FULL);
   node.h = {1.0, 2.0, 2.0, 0.0, 0.0, 0.0};
   node.v_previous = {-1.0, 0.5, 0.0};
   EXPECT_EQ(node.step({-1.0, 0.5, 0.0}), ILAW_OK);
@@ -150,11 +129,11 @@ TEST(ResolvedFriction, RefusesWhatItDoesNotKnow) {
 
 // H = diag(h_N, h_T, h_T) along random axes, which an ABI accepts to 1e-6: rounded to single precision as H
 // is, or as far off as they may be. The impulse is that of the transverse form to the error of the axes.
-TEST(ResolvedFriction, ServesAnIsotropicHAlongSingleAxes) {
+TEST(RoughImpact, ServesAnIsotropicHAlongSingleAxes) {
   constexpr std::size_t count = 2000;
   constexpr double off = 0.99e-6;
   const auto batch_of = [](std::uint32_t form) {
-    return LawBatch(make_law("coulomb", SetupBuilder(resolved(0.3, 0.5), 3, form, ILAW_FRAME_GLOBAL, true)),
+    return LawBatch(make_law("impact", SetupBuilder(rough(0.3, 0.5), 3, form, ILAW_FRAME_GLOBAL, true)),
                     count);
   };
   LawBatch full = batch_of(ILAW_DELASSUS_FULL), transverse = batch_of(ILAW_DELASSUS_TRANSVERSE);
@@ -187,16 +166,6 @@ TEST(ResolvedFriction, ServesAnIsotropicHAlongSingleAxes) {
   ASSERT_EQ(transverse.evaluate(), ILAW_OK);
   for (std::size_t i = 0; i < count; ++i)
     ASSERT_LE(length(full.r[i] - transverse.r[i]), 1e-5 * length(transverse.r[i])) << i;
-}
-
-TEST(ResolvedFriction, AloneHasAState) {
-  for (const char* activation : {"moreau", "predictive", "resolved"}) {
-    const NodeRun node("coulomb", {{{"friction", 0.5}}, {{"activation", activation}}});
-    const bool remembers = activation == std::string("resolved");
-    const ilaw_instance_info info = node.interface.info();
-    EXPECT_EQ(info.state_size, remembers ? 2U : 0U) << activation;
-    EXPECT_EQ(info.capabilities, remembers ? std::uint32_t{ILAW_CAN_STORE_ENERGY} : 0U) << activation;
-  }
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-// activation: "resolved" with friction, through the ABI: rebounds that stick and slide against closed forms,
+// Impacts with friction, through the ABI: rebounds that stick and slide against closed forms,
 // starts of slip, orders. The equations are those of docs/theory/resolved_impact.md.
-#include "resolved_friction.hpp"
+#include "impact_runs.hpp"
 
 #include "laws/changing_steps.hpp"
 
@@ -43,7 +43,7 @@ Throw thrown_at(Throw at, const Body& body, double time) {
 }
 
 Error error_of_throw(const Throw& start, const Body& body, const Steps& steps, double end) {
-  NodeRun node("coulomb", resolved(body.friction, body.restitution), 1.0, ILAW_DELASSUS_TRANSVERSE);
+  NodeRun node("impact", rough(body.friction, body.restitution), 1.0, ILAW_DELASSUS_TRANSVERSE);
   node.h[1] = body.coupling;
   double time = 0.0, step = steps(0.0);
   Vector u = start.u, v = start.v;
@@ -79,7 +79,7 @@ Error error_of_throw(const Throw& start, const Body& body, const Steps& steps, d
 // Thrown askew above a tilted floor: neither the force nor the motion lies in one plane with the other.
 const Throw askew{{0.3, 0.0, 0.0}, {-1.0, 2.0, 0.7}, {-9.81, -1.1, 2.3}};
 
-TEST(ResolvedFriction, IsExactForThrownBodies) {
+TEST(RoughImpact, IsExactForThrownBodies) {
   for (const double coupling : {1.0, 3.5})
     for (const double restitution : {1.0, 0.8})
       for (const double friction : {0.0, 0.05, 0.3, inf_value})
@@ -92,7 +92,7 @@ TEST(ResolvedFriction, IsExactForThrownBodies) {
           }
 }
 
-TEST(ResolvedFriction, HasOrderTwoAtChangingSteps) {
+TEST(RoughImpact, HasOrderTwoAtChangingSteps) {
   for (const double restitution : {1.0, 0.8})
     for (const double friction : {0.05, 0.3, inf_value})
       for (const auto& set : step_sets)
@@ -103,12 +103,12 @@ TEST(ResolvedFriction, HasOrderTwoAtChangingSteps) {
 }
 
 // Both impulses together are that of the impact, and each has its part: 1 - s and s of the step.
-TEST(ResolvedFriction, SharesTheImpulseOfTheImpact) {
+TEST(RoughImpact, SharesTheImpulseOfTheImpact) {
   constexpr double h = 1e-2, inverse_mass = 0.5, w = 3.0;
   for (const double friction : {0.2, 2.0})
     for (const double restitution : {0.25, 1.0})
       for (double part = 1.0 / 64.0; part < 1.0; part += 1.0 / 32.0) {
-        NodeRun node("coulomb", resolved(friction, restitution), h, ILAW_DELASSUS_TRANSVERSE);
+        NodeRun node("impact", rough(friction, restitution), h, ILAW_DELASSUS_TRANSVERSE);
         node.h[0] = inverse_mass;
         node.h[1] = 2.0 * inverse_mass;
         node.gap = w * part * h;
@@ -129,10 +129,10 @@ TEST(ResolvedFriction, SharesTheImpulseOfTheImpact) {
 
 // Thrown down so hard that a flight lasts 1.2 steps, and pulled along the floor, to which it sticks at each
 // impact: at 0.5 of a step, and at 0.7 of the next.
-TEST(ResolvedFriction, SticksAgainInTheNextStep) {
+TEST(RoughImpact, SticksAgainInTheNextStep) {
   constexpr double h = 1e-2, press = -100.0, pull = 70.0, w = 1.2, slides = 0.9, first = 0.5 * h,
                    flight = 1.2 * h, left = 2.0 * h - (first + flight);
-  NodeRun node("coulomb", resolved(inf_value, 0.5), h);
+  NodeRun node("impact", rough(inf_value, 0.5), h);
   node.gap = w * first + 0.5 * press * first * first;
   node.v_previous = {-w - press * (first + 0.5 * h), slides - pull * (first + 0.5 * h), 0.0};
   double x = 0.0;
@@ -148,10 +148,10 @@ TEST(ResolvedFriction, SticksAgainInTheNextStep) {
 }
 
 // On a belt: the same, seen from it.
-TEST(ResolvedFriction, ReboundsFromAMovingBelt) {
+TEST(RoughImpact, ReboundsFromAMovingBelt) {
   constexpr double h = 1e-3, belt = 1.7, lift = 0.4, start = 0.1, end = 0.2;
   for (const double friction : {0.1, inf_value}) {
-    NodeRun node("coulomb", resolved(friction, 0.5), h);
+    NodeRun node("impact", rough(friction, 0.5), h);
     double z = start, x = 0.0, vz = -1.0, vx = 0.0, time = 0.0;
     for (; time < end; time += h) {
       node.gap = z - lift * time;
@@ -205,7 +205,7 @@ Swing swing_at(const Body& body, double time) {
   }
 }
 double error_of_swing(const Body& body, const Steps& steps, double end) {
-  NodeRun node("coulomb", resolved(body.friction, body.restitution), 1.0);
+  NodeRun node("impact", rough(body.friction, body.restitution), 1.0);
   const auto pull = [](double u) { return -frequency * frequency * (u + offset); };
   const auto draw = [](double x) { return -tangential_frequency * tangential_frequency * x; };
   double time = 0.0, step = steps(0.0), error = 0.0, size = 0.0;
@@ -232,7 +232,7 @@ double error_of_swing(const Body& body, const Steps& steps, double end) {
   return error / size;
 }
 
-TEST(ResolvedFriction, HasOrderTwoAgainstARoughStop) {
+TEST(RoughImpact, HasOrderTwoAgainstARoughStop) {
   for (const double restitution : {1.0, 0.8})
     for (const double friction : {0.02, 0.3, inf_value})
       for (const auto& set : step_sets)
@@ -256,14 +256,14 @@ double stuck_and_slid(double time) {
   return 0.03 + 0.02 * std::cos(10.0 * time) + 0.01 * std::sin(10.0 * time);
 }
 
-TEST(ResolvedFriction, StartsToSlipAtOrderTwo) {
+TEST(RoughImpact, StartsToSlipAtOrderTwo) {
   for (const auto& set : step_sets)
     for (const double h : set)
       for (const bool varies : {false, true}) {
         const Steps steps = varies ? varying(h) : fixed(h);
-        Parameters parameters = resolved(0.5, 0.0);
+        Parameters parameters = rough(0.5, 0.0);
         parameters.numbers["kinetic_friction"] = 0.3;
-        NodeRun node("coulomb", parameters, h);
+        NodeRun node("impact", parameters, h);
         double time = 0.0, step = steps(0.0), x = 0.0, v = 0.1, error = 0.0, size = 0.0;
         bool sticks = true;
         while (time < 3.0) {

@@ -18,13 +18,14 @@
 // and may have
 //   bonds()                            whether these parameters make a bond at all
 // and, where a bond may be rigid, is_rigid(memory), bears(impulse, capacity) and a quick surely_bears.
-// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/bond_step.hpp>
 #include <ilaw/kit/roots.hpp>
+#include "bond_step.hpp"
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace bond_law::inline ILAW_KIT_LEVEL {
+
+using namespace ilaw::kit;
 
 // The variables of a bond: its memory, from 0 to 1, and where it is.
 constexpr auto bond_variables(const char* name, const char* doc) {
@@ -222,7 +223,7 @@ struct adhesive_bond {
     bond_result<bond_step<V, Delassus>> found(p.state.memory);
     respond(step, open, common, found);
     const V sum = found.motion.size + step.before;
-    const mask has_scale = is_scalar ? found.holds | !found.holds : (sum > 0x1p-200) & (sum < 0x1p200);
+    const mask has_scale = is_scalar ? ilaw::kit::all<V>() : (sum > 0x1p-200) & (sum < 0x1p200);
     mask left = found.left | found.motion.unsolved | !(found.holds | has_scale);
     const mask gains = open & put_in(step, found.motion);
     if (any(gains)) {
@@ -316,4 +317,4 @@ struct adhesive_bond {
   }
 };
 
-}  // namespace ilaw::kit
+}  // namespace bond_law

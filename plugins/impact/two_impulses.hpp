@@ -1,33 +1,12 @@
-// resolved_impact.hpp - an impact resolved to second order in its instant, by two impulses in two steps;
-// docs/theory/resolved_impact.md derives the equations and proves that no energy is added.
-// SPDX-License-Identifier: BSD-3-Clause
+// two_impulses.hpp - an impact resolved to second order in its instant, by an impulse in its step and one in
+// the next; docs/theory/resolved_impact.md derives the equations and proves that no energy is added.
 #pragma once
 
 #include <ilaw/kit/friction.hpp>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace impact_law {
 
-// Values of the parameter "activation" of laws that resolve impacts.
-inline constexpr const char* resolving_choices[] = {"moreau", "predictive", "resolved"};
-inline constexpr double resolved = 2.0;
-
-template <class Law>
-constexpr parameter<Law> resolving_activation_parameter(double Law::*member) {
-  parameter<Law> p = activation_parameter<Law>(member);
-  p.doc =
-      "moreau: acts where the gap is closed; predictive: acts where the next gap would be negative; resolved: the "
-      "same, with the impact at its instant within the step.";
-  p.choices = resolving_choices;
-  return p;
-}
-
-template <class State>
-constexpr state_variable<State> waiting_work_variable(double State::*member) {
-  return {.member = member,
-          .name = "waiting_work",
-          .unit = "J",
-          .doc = "Work that the impact of the last step leaves to the impulse of the next one; 0: none."};
-}
+using namespace ilaw::kit;
 
 // The impulse of a step, and the work W that the impact leaves to the impulse of the next step; 0: none. W >
 // 0 is energy that this contact stores; W < 0 is still to be dissipated, as if the contact were alone at its
@@ -35,7 +14,7 @@ constexpr state_variable<State> waiting_work_variable(double State::*member) {
 // For friction: the gain that the last impact left to this step, and the impact of this step, if it bounces,
 // at the part `instant` of the step; this contact stops the part `speed` of the approach.
 template <class V>
-struct resolved_impact {
+struct two_impulses {
   V impulse, work, rebound, instant, speed;
   mask_of<V> lands, bounces;
 };
@@ -92,13 +71,13 @@ ILAW_KIT_INLINE auto resolve_impact(const Node& node, number_of<Node> restitutio
   const V open = positive_part(node.gap);
   const mask_of<V> strikes = open + node.position_step * (alone + gain_alone) <= 0.0,
                    hits = strikes | (open + node.position_step * (free + gain) <= 0.0);
-  resolved_impact<V> found{.impulse = 0.0,
-                           .work = 0.0,
-                           .rebound = gain,
-                           .instant = 0.0,
-                           .speed = 0.0,
-                           .lands = hits,
-                           .bounces = hits};
+  two_impulses<V> found{.impulse = 0.0,
+                        .work = 0.0,
+                        .rebound = gain,
+                        .instant = 0.0,
+                        .speed = 0.0,
+                        .lands = hits,
+                        .bounces = hits};
   if (any(hits)) {
     const V gamma = open * node.per_position_step, now = mean_alone + gain_alone;
     const V square = positive_part(now * now - 2.0 * change * gamma), speed = square_root(square);
@@ -131,7 +110,7 @@ ILAW_KIT_INLINE auto resolve_impact(const Node& node, number_of<Node> restitutio
 
 // A tangential impulse, and the status where the contact is pressed.
 template <class Vector>
-struct resolved_rubbing {
+struct rubbing {
   Vector impulse;
   status_of<typename Vector::number> status;
 };
@@ -160,7 +139,7 @@ ILAW_KIT_INLINE auto rub_in_touch(const Node& node, V normal, V friction, V kine
     ratio = zero_unless((found.status == status::stick) & (normal > 0.0) & (kinetic < friction),
                         smaller(now, V(1.0)));
   }
-  return resolved_rubbing<Vector>{free.against(V(0.0), found.factor), found.status};
+  return rubbing<Vector>{free.against(V(0.0), found.factor), found.status};
 }
 
 // The part of its step at which the last impact was, from the rebound that it left: rebound = s (1 + e) w and
@@ -176,7 +155,7 @@ ILAW_KIT_INLINE V instant_of_rebound(V restitution, V rebound, V velocity, V cha
 // That of a node that rebounds: the part s_0 of the friction of the last impact and the part 1 - s of that of
 // this one, each in its cone, less what is outside the cone of r_N or would be positive work.
 template <class Node, class V>
-ILAW_KIT_INLINE auto rub_at_impact(const Node& node, const resolved_impact<V>& impact, V restitution,
+ILAW_KIT_INLINE auto rub_at_impact(const Node& node, const two_impulses<V>& impact, V restitution,
                                    V friction) {
   using Vector = std::remove_cvref_t<decltype(node.v_free)>;
   const V h_n = node.delassus.normal(), h_t = node.delassus.tangential();
@@ -199,14 +178,16 @@ ILAW_KIT_INLINE auto rub_at_impact(const Node& node, const resolved_impact<V>& i
   const V part = smaller(
       inside, dissipative_part(tangential_product(scaled, motion), h_t * tangential_product(scaled, r)));
   const status_of<V> moved = select(impact.bounces, of_this.status, of_last.status);
-  return resolved_rubbing<Vector>{part * r, select(part < sticking_part, status_of<V>(status::slip), moved)};
+  return rubbing<Vector>{part * r, select(part < sticking_part, status_of<V>(status::slip), moved)};
 }
 
-// Friction of a resolved contact for H = diag(h_N, h_T, h_T). Writes the impulse, returns the status.
+// Friction for H = diag(h_N, h_T, h_T). Writes the impulse, returns the status.
 template <class Node>
-ILAW_KIT_INLINE status_of<number_of<Node>> apply_resolved_friction(
-    Node& node, const resolved_impact<number_of<Node>>& impact, number_of<Node> restitution,
-    number_of<Node> friction, number_of<Node> kinetic, number_of<Node>& ratio) {
+ILAW_KIT_INLINE status_of<number_of<Node>> apply_friction(Node& node,
+                                                          const two_impulses<number_of<Node>>& impact,
+                                                          number_of<Node> restitution,
+                                                          number_of<Node> friction, number_of<Node> kinetic,
+                                                          number_of<Node>& ratio) {
   auto found = rub_in_touch(node, impact.impulse, friction, kinetic, ratio);
   const mask_of<number_of<Node>> rebounds = impact.bounces | ((impact.rebound > 0.0) & !impact.lands);
   if (any(rebounds)) {
@@ -219,4 +200,4 @@ ILAW_KIT_INLINE status_of<number_of<Node>> apply_resolved_friction(
   return select(impact.impulse > 0.0, found.status, status::free);
 }
 
-}  // namespace ilaw::kit
+}  // namespace impact_law

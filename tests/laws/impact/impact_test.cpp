@@ -1,4 +1,4 @@
-// activation: "resolved", through the ABI: its order, its energy, its state. The equations are those of
+// Impacts without friction, through the ABI: their order, energy and state. The equations are those of
 // docs/theory/resolved_impact.md.
 #include "laws/changing_steps.hpp"
 
@@ -9,9 +9,7 @@
 namespace ilaw::testing {
 namespace {
 
-Parameters resolved(double restitution) {
-  return {{{"restitution", restitution}}, {{"activation", "resolved"}}};
-}
+Parameters frictionless(double restitution) { return {{{"restitution", restitution}}, {}}; }
 
 // ---- a mass under a force that depends on its position
 
@@ -20,7 +18,7 @@ using Motion = std::function<double(double)>;
 // Mean error of positions over that of the exact ones.
 double error_of(double restitution, const Steps& steps, double end, const Motion& acceleration,
                 const Motion& exact) {
-  NodeRun node("contact", resolved(restitution));
+  NodeRun node("impact", frictionless(restitution));
   double time = 0.0, step = steps(time), u = 1.0, v = 0.5 * step * acceleration(u), error = 0.0, size = 0.0;
   while (time + step < end) {
     u += step * v;
@@ -74,13 +72,13 @@ Motion oscillator(double restitution) {
   };
 }
 
-TEST(Resolved, IsExactForAnElasticBall) {
+TEST(Impact, IsExactForAnElasticBall) {
   for (const auto& set : step_sets)
     for (const double h : set) EXPECT_LE(error_of(1.0, fixed(h), 5.0, falls, ball(1.0)), 5e-12) << "h " << h;
 }
 
 // Through the accumulation point: bounces that last less than a step are cut, h^2 high.
-TEST(Resolved, BringsABallToRestAtOrderTwo) {
+TEST(Impact, BringsABallToRestAtOrderTwo) {
   for (const double restitution : {0.8, 0.5})
     for (const auto& set : step_sets)
       for (const double h : set)
@@ -88,7 +86,7 @@ TEST(Resolved, BringsABallToRestAtOrderTwo) {
             << "e " << restitution << ", h " << h;
 }
 
-TEST(Resolved, HasOrderTwoAtChangingSteps) {
+TEST(Impact, HasOrderTwoAtChangingSteps) {
   for (const double restitution : {1.0, 0.8, 0.5})
     for (const auto& set : step_sets)
       for (const double h : set) {
@@ -98,7 +96,7 @@ TEST(Resolved, HasOrderTwoAtChangingSteps) {
       }
 }
 
-TEST(Resolved, HasOrderTwoAgainstAStop) {
+TEST(Impact, HasOrderTwoAgainstAStop) {
   for (const double restitution : {1.0, 0.8, 0.5})
     for (const auto& set : step_sets)
       for (const double h : set)
@@ -115,7 +113,7 @@ struct Extremes {
 // A mass on a spring about -middle, with h omega of the step 1, against a stop at 0. The energy of a step is
 // that of the scheme, v^2/2 + w^2 (u_n + d)(u_{n+1} + d)/2, and what the law stores.
 Extremes swing(double restitution, double h_omega, double middle, int steps) {
-  NodeRun node("contact", resolved(restitution), h_omega);
+  NodeRun node("impact", frictionless(restitution), h_omega);
   double u = 1.0, v = 0.0, before = 0.0, first = 0.0, size = 0.0;
   Extremes found;
   for (int k = 0; k < steps; ++k) {
@@ -138,7 +136,7 @@ Extremes swing(double restitution, double h_omega, double middle, int steps) {
   return found;
 }
 
-TEST(Resolved, NeverGainsUpToTheCriticalStep) {
+TEST(Impact, NeverGainsUpToTheCriticalStep) {
   for (const double restitution : {1.0, 0.95, 0.8, 0.5, 0.1})
     for (const double h_omega : {0.1, 0.5, 1.0, 1.5, 1.9, 1.95, 1.999})
       for (const double middle : {0.3, 0.0, -0.2}) {
@@ -148,7 +146,7 @@ TEST(Resolved, NeverGainsUpToTheCriticalStep) {
       }
 }
 
-TEST(Resolved, KeepsTheEnergyOfAMillionSteps) {
+TEST(Impact, KeepsTheEnergyOfAMillionSteps) {
   for (const double h_omega : {0.1, 0.5, 1.0, 1.5, 1.9, 1.999}) {
     const Extremes found = swing(1.0, h_omega, 0.3, 1000000);
     EXPECT_LE(found.lost, 1e-12) << "h w " << h_omega;
@@ -157,11 +155,11 @@ TEST(Resolved, KeepsTheEnergyOfAMillionSteps) {
 }
 
 // Whatever the velocities, forces, steps and inverse masses: the parts are the work, and none is negative.
-TEST(Resolved, MakesNoEnergyWhateverMovesIt) {
+TEST(Impact, MakesNoEnergyWhateverMovesIt) {
   Random random(3);
   int waiting = 0, again = 0;
   for (const double restitution : {0.05, 0.4, 0.9, 1.0}) {
-    NodeRun node("contact", resolved(restitution), 1e-3);
+    NodeRun node("impact", frictionless(restitution), 1e-3);
     double stored = 0.0;
     for (int k = 0; k < 100000; ++k) {
       const double before = k % 3 == 0 ? node.v[0] : random(), free = before + 0.5 * random(),
@@ -189,12 +187,12 @@ TEST(Resolved, MakesNoEnergyWhateverMovesIt) {
 
 // An impact under a constant force, anywhere in its step, loses (1 - e^2) w^2/(2 H) over both impulses, and
 // the node goes on along its parabola.
-TEST(Resolved, LosesTheEnergyOfItsRestitution) {
+TEST(Impact, LosesTheEnergyOfItsRestitution) {
   constexpr double h = 1e-2, w = -3.0, inverse_mass = 0.5;
   for (const double restitution : {0.25, 1.0 / 3.0, 0.8, 1.0})
     for (const double force : {0.0, -10.0, 10.0})
       for (double part = 0.0; part < 1.0; part += 1.0 / 64.0) {
-        NodeRun node("contact", resolved(restitution), h);
+        NodeRun node("impact", frictionless(restitution), h);
         node.h[0] = inverse_mass;
         const double s = part * h, leaving = -restitution * w;
         node.gap = -w * s + 0.5 * force * s * s;
@@ -217,12 +215,12 @@ TEST(Resolved, LosesTheEnergyOfItsRestitution) {
 
 // Pressed so that a flight lasts little more than a step: the floor is never passed, and each step is within
 // what the one before left of the energy.
-TEST(Resolved, IsHitAgainInTheNextStep) {
+TEST(Impact, IsHitAgainInTheNextStep) {
   constexpr double h = 1e-2, force = -100.0;
   int again = 0;
   for (const double restitution : {0.5, 0.9, 1.0})
     for (double start = 0.01; start < 0.06; start += 0.00137) {
-      NodeRun node("contact", resolved(restitution), h);
+      NodeRun node("impact", frictionless(restitution), h);
       node.gap = start;
       double before = INFINITY;
       for (int k = 0; k < 400; ++k) {
@@ -241,10 +239,10 @@ TEST(Resolved, IsHitAgainInTheNextStep) {
   EXPECT_GT(again, 100);
 }
 
-TEST(Resolved, ReboundsFromAMovingWall) {
+TEST(Impact, ReboundsFromAMovingWall) {
   constexpr double h = 1e-3, wall = 2.0, speed = -1.0, start = 0.1, end = 0.1;
   for (const double restitution : {0.5, 1.0}) {
-    NodeRun node("contact", resolved(restitution), h);
+    NodeRun node("impact", frictionless(restitution), h);
     double u = start, v = speed, time = 0.0;
     for (; time < end; time += h) {
       node.gap = u - wall * time;
@@ -259,10 +257,10 @@ TEST(Resolved, ReboundsFromAMovingWall) {
   }
 }
 
-TEST(Resolved, NeverPassesAtAnyPositionStep) {
+TEST(Impact, NeverPassesAtAnyPositionStep) {
   for (const double l : {3e-4, 1e-3, 7e-3})
     for (const double restitution : {0.3, 1.0}) {
-      NodeRun node("contact", resolved(restitution), 1e-3);
+      NodeRun node("impact", frictionless(restitution), 1e-3);
       node.position_dt = l;
       for (double gap = 0.0; gap < 3.0; gap += 0.0437) {
         node.initialise();
@@ -276,9 +274,9 @@ TEST(Resolved, NeverPassesAtAnyPositionStep) {
 
 // ---- its limits, its state
 
-TEST(Resolved, IsPredictiveWithoutRestitution) {
+TEST(Impact, IsPredictiveWithoutRestitution) {
   Random random(5);
-  NodeRun node("contact", resolved(0.0)), other("contact", {{}, {{"activation", "predictive"}}});
+  NodeRun node("impact", frictionless(0.0)), other("contact", {{}, {{"activation", "predictive"}}});
   for (int k = 0; k < 100000; ++k) {
     const double scale = std::pow(10.0, k % 2 ? random(-300.0, 300.0) : 0.0);
     node.gap = k % 10 == 0 ? 0.0 : 1e-3 * scale * random();
@@ -289,25 +287,15 @@ TEST(Resolved, IsPredictiveWithoutRestitution) {
   }
 }
 
-TEST(Resolved, AloneHasAState) {
-  for (const char* activation : {"moreau", "predictive", "resolved"}) {
-    const NodeRun node("contact", {{{"restitution", 0.5}}, {{"activation", activation}}});
-    const bool remembers = activation == std::string("resolved");
-    const ilaw_instance_info info = node.interface.info();
-    EXPECT_EQ(info.state_size, remembers ? 1U : 0U) << activation;
-    EXPECT_EQ(info.capabilities, remembers ? std::uint32_t{ILAW_CAN_STORE_ENERGY} : 0U) << activation;
-  }
-}
-
 // The rest of an impact is in the state: a run that begins between both impulses goes on bit for bit.
-TEST(Resolved, GoesOnFromItsState) {
+TEST(Impact, GoesOnFromItsState) {
   constexpr double h = 1e-2;
-  NodeRun node("contact", resolved(0.8), h);
+  NodeRun node("impact", frictionless(0.8), h);
   node.gap = 0.012;
   node.v_previous = {-2.0, 0.0, 0.0};
   ASSERT_EQ(node.step({-2.1, 0.0, 0.0}), ILAW_OK);
   ASSERT_NE(node.state[0], 0.0);
-  NodeRun resumed("contact", resolved(0.8), h);
+  NodeRun resumed("impact", frictionless(0.8), h);
   resumed.state = node.state;
   resumed.v_previous = node.v_previous;
   node.gap += h * node.v[0];
