@@ -50,7 +50,6 @@ SECTIONS = [
                           ("path_curve", "a curve in place of a list of [time, displacement...]"),
                           ("sine", "`sine`")]),
     ("Interfaces", [("interface", "entries of `interfaces`"), ("against", "`against`"),
-                    ("pair", "rows of the tables of `pairs`"),
                     ("obstacle", "`obstacle`, common to all types")]),
     ("Plane", [("obstacle_plane", "`obstacle` of type `plane`"), ("tilt", "`tilt` of a plane")]),
     ("Sphere", [("obstacle_sphere", "`obstacle` of type `sphere`")]),

@@ -134,7 +134,6 @@ InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene
   setup.counterpart = read_counterpart(interface, own, *scene.model, pointer);
   setup.arguments = read_arguments(interface.value("parameters", json::object()), setup.nodes.size(),
                                    pointer + "/parameters");
-  read_pairs(interface, scene.source, *scene.model, pointer, setup);
   setup.arguments.fields = read_fields(scene.source, setup.nodes, *scene.model);
   read_contact_heat(interface, scene, pointer, setup);
   setup.birth = interface.value("birth", setup.birth);
@@ -147,14 +146,6 @@ InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene
   if (setup.counterpart->shares_partners()) read_areas(setup, scene);
   setup.keeps_all_active = !interface.value("skip", true);
   return setup;
-}
-
-// The key below an interface that has a refused parameter.
-std::string key_of(const ParameterError& error, const json& interface) {
-  const std::string& below = error.pointer();
-  const std::string name = below.substr(std::min<std::size_t>(1, below.size()), below.find('/', 1) - 1);
-  const bool is_given = interface.value("parameters", json::object()).contains(name);
-  return interface.contains("pairs") && !name.empty() && !is_given ? "/pairs" : "/parameters" + below;
 }
 
 // Reports an error of the loader or the law at the key that it is about.
@@ -181,7 +172,7 @@ std::unique_ptr<Interface> read_interface(std::size_t number, const Scene& scene
   } catch (const ParameterError& error) {
     const std::string whose =
         error.node_index() ? " (node " + std::to_string(own.nodes[*error.node_index()]) + ")" : "";
-    throw SceneError(pointer + key_of(error, interface), error.what() + whose);
+    throw SceneError(pointer + "/parameters" + error.pointer(), error.what() + whose);
   } catch (const ilaw::error& error) {
     refuse_law(error, interface, pointer);
   }

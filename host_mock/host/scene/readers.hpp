@@ -47,12 +47,6 @@ std::unique_ptr<Interface> read_interface(std::size_t number, const Scene& scene
 // "obstacle" or "against" of an interface between its own nodes and that.
 std::unique_ptr<Counterpart> read_counterpart(const nlohmann::json& interface, const NodeSet& own,
                                               const Model& model, const std::string& pointer);
-// Adds to the arguments of a setup, whose nodes and counterpart are set, the parameters that the table
-// interface["pairs"] of the scene has for the two materials that meet at each node, its sides. A side is a
-// set of nodes, or the name of the obstacle. Does nothing without that key.
-void read_pairs(const nlohmann::json& interface, const nlohmann::json& scene, const Model& model,
-                const std::string& pointer, InterfaceSetup& setup);
-
 // Temperatures, from the `thermal` of the bodies; null where none has it.
 std::shared_ptr<const ThermalModel> read_thermal(const nlohmann::json& given, const Model& model);
 // Throws where a node has no temperature.

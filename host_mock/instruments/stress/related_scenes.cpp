@@ -36,7 +36,7 @@ void give_default(json& source, const char* bodies, const char* key, const json&
     if (!body.contains(key)) body[key] = value;
 }
 
-// "both_sides" and "pairs" make several interfaces of one.
+// "both_sides" makes two interfaces of one.
 bool has_each_interface(const json& source, const Scene& read) {
   return source["interfaces"].size() == read.interfaces.size();
 }

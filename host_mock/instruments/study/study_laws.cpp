@@ -123,7 +123,6 @@ json with_law(const json& source, const json& entry, double unit_step, const std
     if (entry.contains("law")) {
       interface["law"] = entry["law"];
       interface.erase("library");
-      interface.erase("pairs");
       interface["parameters"] = parameters;
     } else {
       interface["parameters"].update(parameters);
