@@ -2,9 +2,9 @@
 #include "cli/run_table.hpp"
 
 #include "base/csv.hpp"
+#include "base/csv_file.hpp"
 #include "base/scene_error.hpp"
 #include "base/words.hpp"
-#include "cli/history_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +44,7 @@ std::map<std::string, json> numbers_of(const json& summary) {
 
 // One number of a column of the history; nothing where there is no such column.
 std::optional<double> reduced(const RunFolder& run, const std::string& column, const std::string& kind) {
-  HistoryFile history(run.folder / "history.csv");
+  CsvFile history(run.folder / "history.csv");
   const auto index = history.index_of(column);
   if (!index) return std::nullopt;
   double last = std::nan(""), least = HUGE_VAL, largest = -HUGE_VAL, sum = 0.0, count = 0.0;
@@ -82,7 +82,7 @@ std::vector<std::string> all_columns(const std::vector<RunFolder>& runs) {
 }
 
 [[noreturn]] void refuse_column(const std::string& column, const std::vector<RunFolder>& runs) {
-  const std::vector<std::string> of_history = HistoryFile(runs.front().folder / "history.csv").names();
+  const std::vector<std::string> of_history = CsvFile(runs.front().folder / "history.csv").names();
   std::vector<std::string> all = all_columns(runs);
   const std::string numbers = joined(all);
   all.insert(all.end(), of_history.begin(), of_history.end());

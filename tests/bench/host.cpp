@@ -2,7 +2,6 @@
 //
 //   ilaw_bench_host [--law NAME] [--situation NAME] [--points N...] [--threads N...] [--repetitions K]
 //                   [--out FILE.csv]
-//   ilaw_bench_host --read N
 //
 // Points under gravity on a plane, or over it: all in flight and far, half of them touching, all
 // touching. The law alone evaluates the same contacts, interleaved and without a list: "law" the
@@ -11,9 +10,6 @@
 // of these in turn; medians are printed, of the processor's time with one thread, which others on
 // the machine disturb little, else of the clock on the wall. "triad" is what the memory gave to as
 // many threads in between (bench/triad.hpp), in arrays as large as a vector of all points.
-//
-// --read writes a scene of N points, reads it as `ilaw run` does, and says how long that took and the largest
-// memory that the process has held.
 #include "base/clock.hpp"
 #include "base/csv.hpp"
 #include "base/large_pages.hpp"
@@ -28,7 +24,6 @@
 #include <CLI/CLI.hpp>
 
 #include <omp.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -199,7 +194,6 @@ struct Options {
   std::vector<int> threads{1};
   int repetitions = 7;
   std::string law, situation, out;
-  std::size_t read = 0;
 };
 
 void measure(const Subject& subject, Situation situation, std::size_t count, int threads,
@@ -259,29 +253,6 @@ int measure_all(const Options& options) {
   return 0;
 }
 
-int measure_reading(std::size_t count) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "ilaw_bench_host.json";
-  {
-    std::ofstream text(file);
-    text << R"({"model": {"type": "points", "dimension": 3, "points": [)";
-    for (std::size_t k = 0; k < count; ++k)
-      text << (k > 0 ? ",\n" : "\n") << R"({"mass": 1.5, "position": [)" << 0.1 * static_cast<double>(k)
-           << R"(, 0.25, 0.0], "velocity": [0.125, 0.5, -1.0]})";
-    text << R"(]}, "time": {"dt": 1e-3, "end": 1e-2}, "interfaces": [{"law": "contact", "nodes": "all",
-      "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})";
-  }
-  const double start = now();
-  const Scene scene = read_scene(file);
-  const double seconds = now() - start;
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  std::printf("%zu points, %.0f MB of text: read in %.2f s, at most %.0f MB held\n", count,
-              1e-6 * static_cast<double>(std::filesystem::file_size(file)), seconds,
-              1e-3 * static_cast<double>(usage.ru_maxrss));
-  std::filesystem::remove(file);
-  return scene.model->node_count() == static_cast<int>(count) ? 0 : 1;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -293,11 +264,10 @@ int main(int argc, char** argv) {
   app.add_option("--threads", options.threads, "Threads")->expected(1, 4)->capture_default_str();
   app.add_option("--repetitions", options.repetitions, "Medians are over so many")->capture_default_str();
   app.add_option("--out", options.out, "CSV file to write as well");
-  app.add_option("--read", options.read, "Read a scene of so many points instead");
   CLI11_PARSE(app, argc, argv);
   place_arrays_one_after_another();
   try {
-    return options.read > 0 ? measure_reading(options.read) : measure_all(options);
+    return measure_all(options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "ilaw_bench_host: %s\n", error.what());
     return 2;

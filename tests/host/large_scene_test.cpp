@@ -1,5 +1,5 @@
-// Scenes of many points: read packed, stepped in blocks, by any number of threads.
-#include "host_runner.hpp"
+// Scenes of many points: read from a table, stepped in blocks, by any number of threads.
+#include "run_result.hpp"
 
 #include <omp.h>
 
@@ -8,7 +8,7 @@
 namespace ilaw::host::testing {
 namespace {
 
-// Points that fall on a plane, each at its own time: enough for packed text and several chunks.
+// Points that fall on a plane, each at its own time: enough for several chunks.
 json falling_points(std::size_t count) {
   Random random(5);
   json points = json::array();
@@ -69,56 +69,51 @@ TEST(LargeScene, GivesTheSameBitsInAnyOrderOfNodesAndNumberOfThreads) {
   EXPECT_EQ(one.v, gathered.v);
 }
 
-TEST(LargeScene, IsReadPackedToTheSameNumbers) {
-  const json source = falling_points(5000);
-  const Scene packed = scene_of(source), plain = read_scene(source, "scene.json");
-  EXPECT_TRUE(packed.source["model"]["points"].is_binary());
-  EXPECT_TRUE(plain.source["model"]["points"].is_array());
-  EXPECT_EQ(packed.model->mass(), plain.model->mass());
-  EXPECT_EQ(packed.model->position(), plain.model->position());
-  EXPECT_EQ(packed.model->initial_velocity(), plain.model->initial_velocity());
-}
-
-// Two thousand million elements: found before any memory is asked for.
-TEST(LargeScene, OfMoreElementsThanNumbersIsRefused) {
-  json scene = json_of(scene_files::named("two_blocks.json"));
-  scene["model"]["blocks"][1]["elements"] = {2000, 1000, 1000};
-  try {
-    scene_of(scene);
-    FAIL() << "not refused";
-  } catch (const SceneError& error) {
-    const std::string refusal = error.what(),
-                      begin = "/model/blocks/1/elements: found [2000,1000,1000], which makes ";
-    EXPECT_THAT(refusal, StartsWith(begin));
-    EXPECT_THAT(refusal, HasSubstr(" nodes, expected at most 5e8"));
+// Twice, by a checkpoint that knows its table.
+TEST(LargeScene, HasItsPointsInATable) {
+  json source = falling_points(100);
+  const Scene written = scene_of(source);
+  const auto folder = fresh_folder();
+  std::ofstream table(folder / "points.csv");
+  table << "mass,area,x0,x1,x2,v0,v1,v2\n";
+  for (const json& point : source["model"]["points"]) {
+    table << point["mass"] << ",1";
+    for (const char* key : {"position", "velocity"})
+      for (const json& component : point[key]) table << ',' << component;
+    table << '\n';
   }
+  table.close();
+  source["model"]["points"] = "points.csv";
+  const Scene read = read_scene(source, folder / "scene.json");
+  EXPECT_EQ(read.model->mass(), written.model->mass());
+  EXPECT_EQ(read.model->position(), written.model->position());
+  EXPECT_EQ(read.model->initial_velocity(), written.model->initial_velocity());
+  std::ofstream(folder / "scene.json") << source.dump();
+  const std::string run = "run " + (folder / "scene.json").string() + " --out " + (folder / "out").string();
+  EXPECT_EQ(run_program(run + " --checkpoint-every 10").code, 0);
+  EXPECT_EQ(run_program(run + " --resume").code, 0);
+  std::ofstream(folder / "points.csv", std::ios::app) << "1,1,0,0,1,0,0,0\n";
+  EXPECT_THAT(run_program(run + " --resume"), Exits(2, HasSubstr("is of other meshes or points")));
 }
 
-TEST(LargeScene, TellsAMistakeInAPointByItsPointer) {
-  const auto refusal_of = [](const json& point) -> std::string {
-    json source = falling_points(5000);
-    source["model"]["points"][4321] = point;
+TEST(LargeScene, TellsAMistakeInItsTable) {
+  json source = falling_points(1);
+  source["model"]["points"] = "points.csv";
+  const auto folder = fresh_folder();
+  const std::string header = "mass,area,x0,x1,x2,v0,v1,v2\n";
+  for (const auto& [text, expected] :
+       {std::pair<std::string, std::string>{"", "the columns mass, area, x0, x1, x2, v0, v1, v2"},
+        {"mass,area,x0,v0\n", "the columns mass, area, x0, x1, x2, v0, v1, v2"},
+        {header, "at least one point"},
+        {header + "1,1,0,0,0,0,0\n", "found point 0"},
+        {header + "1,1,0,0,0,0,0,0\n-1,1,0,0,0,0,0,0\n", "found point 1"}}) {
+    std::ofstream(folder / "points.csv") << text;
     try {
-      scene_of(source);
+      read_scene(source, folder / "scene.json");
+      ADD_FAILURE() << text;
     } catch (const SceneError& error) {
-      return error.what();
+      EXPECT_THAT(error.what(), AllOf(StartsWith("/model/points: "), HasSubstr(expected)));
     }
-    return "none";
-  };
-  const json right = {{"mass", 1.0}, {"position", {0, 0, 1}}};
-  EXPECT_EQ(refusal_of(right), "none");
-  for (const auto& [key, value, expected] :
-       {std::tuple<const char*, json, const char*>{"mass", -1.0, "/model/points/4321/mass"},
-        {"mass", "1", "/model/points/4321/mass"},
-        {"area", -1, "/model/points/4321/area"},
-        {"position", {0, 0}, "/model/points/4321/position"},
-        {"position", 1, "/model/points/4321/position"},
-        {"velocity", {0, 0, nullptr}, "/model/points/4321/velocity/2"},
-        {"velocty", {0, 0, 1}, "/model/points/4321/velocty"}}) {
-    json point = right;
-    point[key] = value;
-    const std::string found = refusal_of(point);
-    EXPECT_THAT(found, StartsWith(expected)) << point;
   }
 }
 

@@ -26,7 +26,7 @@ json identity_of(const Scene& scene) {
           {"program", ILAW_VERSION},
           {"scene", scene.source},
           {"laws", laws},
-          {"meshes", marks_of_meshes(scene.source["model"], scene.file)}};
+          {"meshes", marks_of_files(scene.source["model"], scene.file)}};
 }
 
 using Bytes = std::vector<std::uint8_t>;
@@ -78,7 +78,7 @@ void check_identity(const json& found, const json& expected) {
   for (const auto& [part, other] :
        {std::pair{"format", "of another format"}, std::pair{"program", "of another version of the program"},
         std::pair{"laws", "of other laws, or of other versions of them"},
-        std::pair{"meshes", "of other meshes"}})
+        std::pair{"meshes", "of other meshes or points"}})
     if (const json was = found.value(part, json()); was != expected[part])
       throw std::runtime_error("is " + std::string(other) + " (" + differences(was, expected[part]) +
                                "), expected the very run that is to be resumed");

@@ -2,7 +2,6 @@
 #include "results/summary.hpp"
 
 #include "base/files.hpp"
-#include "scene/packed_points.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -95,10 +94,9 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
     interfaces.push_back(describe_interface(*scene.interfaces[i], integrator.first_contact(i)));
   std::vector<std::string> warnings = scene.warnings;
   warnings.insert(warnings.end(), record.warnings.begin(), record.warnings.end());
-  const json source = with_packed_points_as(scene.source, {{"count", scene.model->node_count()}});
   json summary = {
       {"program", {{"name", "ilaw"}, {"version", ILAW_VERSION}, {"abi", {ILAW_ABI_MAJOR, ILAW_ABI_MINOR}}}},
-      {"scene", {{"file", scene.file.filename().string()}, {"title", scene.title}, {"source", source}}},
+      {"scene", {{"file", scene.file.filename().string()}, {"title", scene.title}, {"source", scene.source}}},
       {"interfaces", interfaces},
       {"interrupted", record.interrupted},
       {"failure", record.failure},

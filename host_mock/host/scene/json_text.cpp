@@ -18,4 +18,8 @@ void require_one_of(const nlohmann::json& object, const char* one, const char* o
   throw mistake(pointer, object.contains(one) ? both : "neither", "one of " + allowed);
 }
 
+std::filesystem::path beside(const std::filesystem::path& scene_file, const std::string& path) {
+  return std::filesystem::absolute(scene_file).parent_path() / path;
+}
+
 }  // namespace ilaw::host

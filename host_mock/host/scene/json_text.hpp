@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 
 namespace ilaw::host {
@@ -20,5 +21,8 @@ SceneError mistake(const std::string& pointer, const std::string& found, const s
 // Exactly one of two keys must be there; allowed says what they are.
 void require_one_of(const nlohmann::json& object, const char* one, const char* other,
                     const std::string& allowed, const std::string& pointer);
+
+// A path of a scene: relative to it, not to wherever the user happens to be.
+std::filesystem::path beside(const std::filesystem::path& scene_file, const std::string& path);
 
 }  // namespace ilaw::host

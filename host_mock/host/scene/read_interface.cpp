@@ -49,11 +49,10 @@ bool find_driven(const InterfaceSetup& setup, const Scene& scene, const std::str
          std::any_of(partners.begin(), partners.end(), is_driven);
 }
 
-// An explicit path is relative to the scene, not to wherever the user happens to be.
 std::string library_of(const json& interface, const std::filesystem::path& scene_file) {
   std::string library = interface.value("library", interface["law"].get<std::string>());
   if (library.find('/') == std::string::npos) return library;
-  return (std::filesystem::absolute(scene_file).parent_path() / library).string();
+  return beside(scene_file, library).string();
 }
 
 // The libraries there are.

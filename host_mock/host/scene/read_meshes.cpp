@@ -15,11 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-// Relative to the scene, not to wherever the user happens to be.
-std::filesystem::path path_of(const json& mesh, const std::filesystem::path& scene_file) {
-  return std::filesystem::absolute(scene_file).parent_path() / mesh["file"].get<std::string>();
-}
-
 FileMark mark_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   FileMark mark;
@@ -44,7 +39,7 @@ json describe_sets(const MeshTopology& topology) {
 MeshSetup read_mesh(const json& mesh, const std::string& pointer, const std::filesystem::path& scene_file) {
   MeshSetup setup;
   try {
-    setup.mesh = read_mesh_file(path_of(mesh, scene_file));
+    setup.mesh = read_mesh_file(beside(scene_file, mesh["file"].get<std::string>()));
     setup.topology = topology_of(setup.mesh);
   } catch (const MeshError& error) {
     throw SceneError(pointer + "/file", mesh["file"].get<std::string>() + ": " + error.what());
@@ -81,12 +76,14 @@ std::string line_of_mesh(const json& mesh) {
   return line;
 }
 
-json marks_of_meshes(const json& model, const std::filesystem::path& scene_file) {
+json marks_of_files(const json& model, const std::filesystem::path& scene_file) {
   json marks = json::array();
-  for (const json& mesh : model.value("meshes", json::array())) {
-    const FileMark mark = mark_of(path_of(mesh, scene_file));
+  const auto add = [&](const json& file) {
+    const FileMark mark = mark_of(beside(scene_file, file.get<std::string>()));
     marks.push_back({{"size", mark.size}, {"checksum", mark.checksum}});
-  }
+  };
+  for (const json& mesh : model.value("meshes", json::array())) add(mesh["file"]);
+  if (const json points = model.value("points", json()); points.is_string()) add(points);
   return marks;
 }
 

@@ -20,8 +20,8 @@ MeshSetup read_mesh(const nlohmann::json& mesh, const std::string& pointer,
 nlohmann::json describe_mesh(const nlohmann::json& mesh, const MeshSetup& setup, double critical_step);
 std::string line_of_mesh(const nlohmann::json& described);
 
-// Sizes and checksums of the files, by which a checkpoint knows its meshes.
-nlohmann::json marks_of_meshes(const nlohmann::json& model, const std::filesystem::path& scene_file);
+// Sizes and checksums of the files of a model, by which a checkpoint knows its meshes and points.
+nlohmann::json marks_of_files(const nlohmann::json& model, const std::filesystem::path& scene_file);
 
 // Reads a .vtu or a legacy .vtk file and checks it: all indices are in range, all cells have a type that
 // MeshData knows. VTK's readers crash on some damaged files, so they run in a process of their own. Throws

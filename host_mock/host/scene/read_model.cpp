@@ -8,7 +8,7 @@
 #include "model/points.hpp"
 #include "model/springs.hpp"
 #include "scene/json_text.hpp"
-#include "scene/packed_points.hpp"
+#include "scene/points_file.hpp"
 #include "scene/read_meshes.hpp"
 #include "scene/values.hpp"
 
@@ -26,14 +26,11 @@ namespace {
 
 using nlohmann::json;
 
-std::unique_ptr<Model> read_points(const json& model) {
+std::unique_ptr<Model> read_points(const json& model, const std::filesystem::path& scene_file) {
   const int d = model["dimension"].get<int>();
-  if (are_packed(model["points"])) {
-    std::vector<PointMass> points = unpacked(model["points"]);
-    check_components(static_cast<int>(points.front().position.size()), d,
-                     at("/model/points", 0) + "/position");
-    return std::make_unique<Points>(d, points);
-  }
+  if (model["points"].is_string())
+    return std::make_unique<Points>(
+        d, read_points_file(beside(scene_file, model["points"].get<std::string>()), d, "/model/points"));
   std::vector<PointMass> points;
   for (std::size_t k = 0; k < model["points"].size(); ++k) {
     const json& point = model["points"][k];
@@ -191,7 +188,7 @@ std::unique_ptr<Model> read_solids(const json& model, const std::filesystem::pat
 
 std::unique_ptr<Model> read_model(const json& model, const std::filesystem::path& scene_file, json& meshes) {
   const std::string type = model["type"].get<std::string>();
-  if (type == "points") return read_points(model);
+  if (type == "points") return read_points(model, scene_file);
   if (type == "rotating_spring") return read_rotating_spring(model);
   return type == "bars" ? read_bars(model) : read_solids(model, scene_file, meshes);
 }

@@ -4,7 +4,6 @@
 #include "model/load.hpp"
 #include "model/thermal_model.hpp"
 #include "scene/json_text.hpp"
-#include "scene/packed_points.hpp"
 #include "scene/scene.hpp"
 #include "scene/values.hpp"
 
@@ -74,7 +73,7 @@ std::shared_ptr<const ThermalModel> read_thermal(const json& given, const Model&
       if (body.contains("thermal"))
         bodies.push_back(body_of(body["thermal"], name, model.sets().at(name).nodes));
     }
-  if (given.contains("points") && !are_packed(given["points"]))
+  if (given.contains("points") && given["points"].is_array())
     for (std::size_t k = 0; k < given["points"].size(); ++k)
       if (const json& point = given["points"][k]; point.contains("thermal"))
         bodies.push_back(body_of(point["thermal"], "point" + std::to_string(k), {static_cast<int>(k)}));

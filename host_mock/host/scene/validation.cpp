@@ -4,7 +4,6 @@
 
 #include "base/words.hpp"
 #include "scene/json_text.hpp"
-#include "scene/packed_points.hpp"
 
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
@@ -229,9 +228,7 @@ void check_lengths(const json& value, const std::string& pointer, Mistakes& mist
 
 }  // namespace
 
-void validate_scene(const json& source) {
-  // Packed points were checked as they were read: one that is right stands in for them.
-  const json scene = with_packed_points_as(source, {{{"mass", 1.0}, {"position", {0.0}}}});
+void validate_scene(const json& scene) {
   Mistakes mistakes;
   check_lengths(scene, "", mistakes);
   refuse(mistakes);

@@ -1,4 +1,4 @@
-// history_file.hpp - reads a history.csv again, row by row.
+// csv_file.hpp - reads a table of numbers, row by row.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,10 +15,10 @@
 
 namespace ilaw::host {
 
-class HistoryFile {
+class CsvFile {
  public:
   // Without columns where there is no such file.
-  explicit HistoryFile(const std::filesystem::path& file) : stream_(file) {
+  explicit CsvFile(const std::filesystem::path& file) : stream_(file) {
     std::getline(stream_, line_);
     names_ = csv_cells(line_);
   }
