@@ -85,6 +85,12 @@ struct FlatSurface {
   Vector displacement, point, normal;
 };
 
+// An obstacle at a time, to look at: a plane without radius, a sphere without direction, else a cylinder.
+struct ObstacleShape {
+  Vector point, direction;  // direction: normal or axis
+  double radius = 0.0;
+};
+
 class Obstacle {
  public:
   explicit Obstacle(Motion motion, std::optional<Turning> turning = {})
@@ -115,6 +121,9 @@ class Obstacle {
   virtual bool is_flat() const { return false; }
   // Where it is flat.
   virtual std::optional<FlatSurface> flat_at(double /*time*/) const { return {}; }
+  virtual ObstacleShape shape(double time) const = 0;
+  // Whether it looks the same at all times.
+  bool looks_the_same() const { return motion_.stands_still() && !tilts(); }
 
  protected:
   const Motion& motion() const { return motion_; }
@@ -141,6 +150,9 @@ class Plane : public Obstacle {
   std::optional<FlatSurface> flat_at(double time) const override {
     return FlatSurface{motion().displacement(time), point_, normal_at(time)};
   }
+  ObstacleShape shape(double time) const override {
+    return {point_ + motion().displacement(time), normal_at(time)};
+  }
 
  private:
   RigidSurface shape_at(const Vector& x, double time) const override;
@@ -157,6 +169,9 @@ class Round : public Obstacle {
  public:
   Round(Vector center, const std::optional<Vector>& axis, double radius, Motion motion,
         std::optional<Turning> turning = {});
+  ObstacleShape shape(double time) const override {
+    return {center_ + motion().displacement(time), axis_.value_or(Vector()), radius_};
+  }
 
  private:
   RigidSurface shape_at(const Vector& x, double time) const override;

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "results/obstacle_shapes.hpp"
 
-#include "scene/json_text.hpp"
-#include "scene/values.hpp"
-
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkIntArray.h>
@@ -21,7 +18,6 @@
 namespace ilaw::host {
 namespace {
 
-using nlohmann::json;
 using Point = Eigen::Vector3d;
 
 constexpr int round_parts = 32;  // of a circle
@@ -46,17 +42,6 @@ struct Bodies {
   }
 };
 
-// The normal of a plane, which may tilt.
-Point normal_of(const json& obstacle, int dimension, const std::string& pointer, double time) {
-  Point normal = in_3d(read_vector(obstacle["normal"], dimension, pointer + "/normal")).normalized();
-  if (!obstacle.contains("tilt")) return normal;
-  const json& tilt = obstacle["tilt"];
-  const Point axis = dimension == 2 ? Point(Point::UnitZ())
-                                    : in_3d(read_direction(tilt["axis"], dimension, pointer + "/tilt/axis"));
-  const double angle = read_table(tilt["angles"], 1, pointer + "/tilt/angles").at(time)[0];
-  return Eigen::AngleAxisd(angle, axis.normalized()) * normal;
-}
-
 class Shapes {
  public:
   Shapes(vtkUnstructuredGrid& grid, int dimension, const Bodies& bodies)
@@ -65,19 +50,15 @@ class Shapes {
     interface_->SetName("interface");
   }
 
-  void add(const json& obstacle, int number, const std::string& pointer, double time) {
+  void add(const ObstacleShape& shape, int number) {
     number_ = number;
-    const std::string type = obstacle["type"].get<std::string>();
-    const auto vector = [&](const char* key) {
-      return in_3d(read_vector(obstacle[key], dimension_, pointer + "/" + key));
-    };
-    const Point moved = in_3d(read_motion(obstacle, dimension_, pointer).displacement(time));
-    if (type == "plane")
-      add_plane(vector("point") + moved, normal_of(obstacle, dimension_, pointer, time));
-    else if (type == "sphere")
-      add_sphere(vector("center") + moved, obstacle["radius"].get<double>());
+    const Point point = in_3d(shape.point);
+    if (shape.radius == 0.0)
+      add_plane(point, in_3d(shape.direction));
+    else if (shape.direction.size() == 0)
+      add_sphere(point, shape.radius);
     else
-      add_cylinder(vector("point") + moved, vector("axis").normalized(), obstacle["radius"].get<double>());
+      add_cylinder(point, in_3d(shape.direction), shape.radius);
   }
 
   void finish() {
@@ -174,29 +155,26 @@ class Shapes {
   int number_ = 0;
 };
 
+const Obstacle* obstacle_of(const Interface& interface) { return interface.setup().counterpart->obstacle(); }
+
 }  // namespace
 
 bool has_obstacles(const Scene& scene) {
-  const json& interfaces = scene.source["interfaces"];
-  return std::any_of(interfaces.begin(), interfaces.end(),
-                     [](const json& interface) { return interface.contains("obstacle"); });
+  return std::ranges::any_of(scene.interfaces, [](const auto& one) { return obstacle_of(*one) != nullptr; });
 }
 
 bool has_moving_obstacles(const Scene& scene) {
-  const json& interfaces = scene.source["interfaces"];
-  return std::any_of(interfaces.begin(), interfaces.end(), [](const json& interface) {
-    const json obstacle = interface.value("obstacle", json::object());
-    return obstacle.contains("velocity") || obstacle.contains("path") || obstacle.contains("tilt");
+  return std::ranges::any_of(scene.interfaces, [](const auto& one) {
+    return obstacle_of(*one) && !obstacle_of(*one)->looks_the_same();
   });
 }
 
 void add_obstacles(vtkUnstructuredGrid& grid, const Scene& scene, double time) {
   const Bodies bodies(*scene.model);
   Shapes shapes(grid, scene.model->dimension(), bodies);
-  const json& interfaces = scene.source["interfaces"];
-  for (std::size_t i = 0; i < interfaces.size(); ++i)
-    if (interfaces[i].contains("obstacle"))
-      shapes.add(interfaces[i]["obstacle"], static_cast<int>(i), at("/interfaces", i) + "/obstacle", time);
+  for (std::size_t i = 0; i < scene.interfaces.size(); ++i)
+    if (const Obstacle* const obstacle = obstacle_of(*scene.interfaces[i]))
+      shapes.add(obstacle->shape(time), static_cast<int>(i));
   shapes.finish();
 }
 
