@@ -109,14 +109,7 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
     scene.interfaces.push_back(read_interface(i, scene));
   check_names(scene);
   read_output(scene.source.value("output", json::object()), scene);
-  warn_of_times(scene);
-  warn_of_start(scene);
-  warn_of_side(scene);
-  warn_of_partners(scene);
-  warn_of_open_bonds(scene);
-  warn_of_memory(scene);
-  warn_of_locking(scene);
-  warn_of_temperatures(scene);
+  add_warnings(scene);
   return scene;
 }
 

@@ -14,16 +14,18 @@
 #include <vector>
 
 namespace ilaw::host {
+namespace {
 
 using nlohmann::json;
 
-namespace {
+std::string number(double value) { return json(value).dump(); }
+std::string node(int index) { return "node " + std::to_string(index); }
 
-// Least time of a step of a small scene, and of each node of a larger one.
-constexpr double seconds_per_step = 2e-7, seconds_per_node = 1e-8;
+// ---- times ----------------------------------------------------------------------------------------------
 
 void warn_of_duration(Scene& scene) {
-  constexpr double day = 86400.0;
+  // Least time of a step of a small scene, and of each node of a larger one.
+  constexpr double seconds_per_step = 2e-7, seconds_per_node = 1e-8, day = 86400.0;
   const double seconds =
       static_cast<double>(scene.steps) * (seconds_per_step + seconds_per_node * scene.model->node_count());
   if (seconds < day) return;
@@ -31,29 +33,31 @@ void warn_of_duration(Scene& scene) {
                                      static_cast<double>(scene.steps), seconds / day));
 }
 
-}  // namespace
-
+// Times at which nothing can happen any more.
 void warn_of_times(Scene& scene) {
   const double end = static_cast<double>(scene.steps) * scene.dt;
   const auto warn_if_late = [&](const json& parts, const char* key, const std::string& pointer) {
     for (std::size_t i = 0; i < parts.size(); ++i)
       if (parts[i].contains(key) && parts[i][key].get<double>() > end)
         scene.warnings.push_back(at(pointer, i) + "/" + key + ": found " + parts[i][key].dump() +
-                                 ", after the end of the run, " + json(end).dump());
+                                 ", after the end of the run, " + number(end));
   };
   warn_if_late(scene.source.value("loads", json::array()), "time", "/loads");
   warn_if_late(scene.source["interfaces"], "birth", "/interfaces");
   const double wanted = scene.source["time"]["end"].get<double>();
   if (scene.dt > wanted * (1.0 + 1e-9))
-    scene.warnings.push_back("/time/end: found " + json(wanted).dump() + ", less than one step, " +
-                             json(scene.dt).dump() + ", which is taken all the same");
+    scene.warnings.push_back("/time/end: found " + number(wanted) + ", less than one step, " +
+                             number(scene.dt) + ", which is taken all the same");
   warn_of_duration(scene);
   if (scene.output.every > scene.steps)
     scene.warnings.push_back("/output/every: found " + std::to_string(scene.output.every) +
                              ": the history has the last of " + std::to_string(scene.steps) + " steps alone");
 }
 
-namespace {
+// ---- interfaces: each gives the text of its warning, or none
+// -----------------------------------------------
+
+const Counterpart& counterpart_of(const Interface& interface) { return *interface.setup().counterpart; }
 
 // A gap of some interface at the start, and where.
 struct StartGaps {
@@ -68,49 +72,34 @@ StartGaps gaps_at_start(const Scene& scene, const Interface& interface, double l
   interface.setup().counterpart->follow(start);
   for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
     const double gap = interface.gap_at(static_cast<int>(k), start, scene.start_time());
-    const int node = interface.nodes()[k];
     if (gap < low) ++found.below;
     if (gap > high) ++found.above;
-    if (gap < found.least) {
-      found.least = gap;
-      found.deepest = node;
-    }
-    if (gap > found.largest) {
-      found.largest = gap;
-      found.farthest = node;
-    }
+    if (gap < found.least) found.least = gap, found.deepest = interface.nodes()[k];
+    if (gap > found.largest) found.largest = gap, found.farthest = interface.nodes()[k];
   }
   return found;
 }
 
-}  // namespace
-
-// The nearest point of a mesh surface comes from an iteration, so its gaps are rounded more.
-void warn_of_start(Scene& scene) {
+// Most laws throw such nodes out. The nearest point of a mesh surface comes from an iteration, so its gaps
+// are rounded more.
+std::string overlap(const Scene& scene, const Interface& interface) {
   const double rounding = 1e-12 * scene.model->position().cwiseAbs().maxCoeff(),
-               rounding_of_surfaces = std::max(rounding, 1e-6 * shortest_edge(*scene.model));
-  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
-    const Interface& interface = *scene.interfaces[i];
-    const Counterpart& counterpart = *interface.setup().counterpart;
-    const bool rigid = counterpart.partners().empty();
-    const double limit = counterpart.shares_partners() ? rounding_of_surfaces : rounding;
-    const StartGaps gaps = gaps_at_start(scene, interface, -limit, HUGE_VAL);
-    if (gaps.below > 0)
-      scene.warnings.push_back(at("/interfaces", i) + ": " + std::to_string(gaps.below) +
-                               " node(s) start inside the " + (rigid ? "obstacle" : "other body") +
-                               ", node " + std::to_string(gaps.deepest) + " by " + json(-gaps.least).dump());
-  }
+               limit = counterpart_of(interface).shares_partners()
+                           ? std::max(rounding, 1e-6 * shortest_edge(*scene.model))
+                           : rounding;
+  const StartGaps gaps = gaps_at_start(scene, interface, -limit, HUGE_VAL);
+  if (gaps.below == 0) return "";
+  return std::to_string(gaps.below) + " node(s) start inside the " +
+         (counterpart_of(interface).partners().empty() ? "obstacle, " : "other body, ") + node(gaps.deepest) +
+         " by " + number(-gaps.least);
 }
-
-namespace {
 
 // How far all of the model lies behind a plane; 0 where some of it does not.
 double depth_behind(const FlatSurface& flat, const Model& model) {
-  const Eigen::Index d = model.dimension();
   const Vector origin = flat.point + flat.displacement;
   double depth = 0.0;
-  for (int node = 0; node < model.node_count(); ++node) {
-    const auto x = model.position().segment(d * node, d) + model.initial_displacement().segment(d * node, d);
+  for (int k = 0; k < model.node_count(); ++k) {
+    const Vector x = model.position(k, model.initial_displacement());
     const double gap = x.dot(flat.normal) - origin.dot(flat.normal);
     const double rounding = 1e-12 * (x.norm() + origin.norm());
     if (gap > rounding) return 0.0;
@@ -119,79 +108,66 @@ double depth_behind(const FlatSurface& flat, const Model& model) {
   return depth;
 }
 
-}  // namespace
-
 // A plane keeps bodies on the side that its normal points to. Where its own nodes lie on it, the rest of the
 // model tells.
-void warn_of_side(Scene& scene) {
-  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
-    const Interface& interface = *scene.interfaces[i];
-    const std::optional<FlatSurface> flat = interface.setup().counterpart->flat_at(scene.start_time());
-    const double depth = flat ? depth_behind(*flat, *scene.model) : 0.0;
-    if (!(depth > 0.0) || gaps_at_start(scene, interface, -1e-9 * depth, HUGE_VAL).below > 0) continue;
-    scene.warnings.push_back(at("/interfaces", i) + "/obstacle/normal: all of the model lies behind the " +
-                             "plane, by up to " + json(depth).dump() + ": does it point towards the bodies?");
-  }
+std::string wrong_side(const Scene& scene, const Interface& interface) {
+  const std::optional<FlatSurface> flat = counterpart_of(interface).flat_at(scene.start_time());
+  const double depth = flat ? depth_behind(*flat, *scene.model) : 0.0;
+  if (!(depth > 0.0) || gaps_at_start(scene, interface, -1e-9 * depth, HUGE_VAL).below > 0) return "";
+  return "all of the model lies behind the plane, by up to " + number(depth) +
+         ": does it point towards the bodies?";
+}
+
+bool has_pairs(const Interface& interface) {
+  return !counterpart_of(interface).partners().empty() && !counterpart_of(interface).shares_partners();
+}
+
+std::string partner_twice(const Scene&, const Interface& interface) {
+  if (!has_pairs(interface)) return "";
+  std::set<int> seen(interface.nodes().begin(), interface.nodes().end());
+  for (const int partner : counterpart_of(interface).partners())
+    if (!seen.insert(partner).second)
+      return "found " + node(partner) +
+             " more than once in this list and 'nodes'. Contacts that share a node are solved together: right "
+             "in a chain of bodies, a mistake where a node was listed twice";
+  return "";
 }
 
 // The n-th node meets the n-th partner: lists in different orders pair what is far from each other.
-void warn_of_partners(Scene& scene) {
+std::string partner_aside(const Scene& scene, const Interface& interface) {
   constexpr double most_edges = 0.5;
   const Model& model = *scene.model;
-  const Eigen::Index d = model.dimension();
-  const double edge = shortest_edge(model);
-  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
-    const Interface& interface = *scene.interfaces[i];
-    const std::vector<int>& partners = interface.setup().counterpart->partners();
-    if (partners.empty() || interface.setup().counterpart->shares_partners()) continue;
-    const std::string pointer = at("/interfaces", i) + "/against/nodes: ";
-    std::set<int> seen(interface.nodes().begin(), interface.nodes().end());
-    const auto twice = std::find_if(partners.begin(), partners.end(),
-                                    [&](const int partner) { return !seen.insert(partner).second; });
-    if (twice != partners.end())
-      scene.warnings.push_back(
-          pointer + "found node " + std::to_string(*twice) +
-          " more than once in this list and 'nodes'. Contacts that share a node are solved together: right in a "
-          "chain of bodies, a mistake where a node was listed twice");
-    for (std::size_t k = 0; d > 1 && k < partners.size(); ++k) {
-      const Vector x = model.position().segment(d * interface.nodes()[k], d) -
-                       model.position().segment(d * partners[k], d);
-      const Vector normal =
-          interface.setup()
-              .counterpart->contact_point(static_cast<int>(k), model.initial_displacement(), 0.0)
-              .normal;
-      const double aside = (x - x.dot(normal) * normal).norm();
-      if (!(aside > most_edges * edge)) continue;
-      scene.warnings.push_back(pointer + "node " + std::to_string(interface.nodes()[k]) +
-                               " and its partner " + std::to_string(partners[k]) + " are " +
-                               json(aside).dump() +
-                               " apart along the interface: are both lists in the same order?");
-      break;
-    }
+  if (!has_pairs(interface) || model.dimension() == 1) return "";
+  const std::vector<int>& partners = counterpart_of(interface).partners();
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    const int own = interface.nodes()[k];
+    const Vector x = model.position(own) - model.position(partners[k]),
+                 normal = counterpart_of(interface)
+                              .contact_point(static_cast<int>(k), model.initial_displacement(), 0.0)
+                              .normal;
+    const double aside = (x - x.dot(normal) * normal).norm();
+    if (aside > most_edges * shortest_edge(model))
+      return node(own) + " and its partner " + std::to_string(partners[k]) + " are " + number(aside) +
+             " apart along the interface: are both lists in the same order?";
   }
+  return "";
 }
 
 // A bond is made where the bodies are: across a gap it pulls from afar.
-void warn_of_open_bonds(Scene& scene) {
+std::string open_bond(const Scene& scene, const Interface& interface) {
   constexpr double most_of_edge = 0.1;
   const double edge = shortest_edge(*scene.model);
-  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
-    const Interface& interface = *scene.interfaces[i];
-    const ilaw_instance_info& info = interface.info();
-    const bool bonds = (info.capabilities & ILAW_CAN_ADHERE) && !(info.permissions & ILAW_MAY_SKIP_FRESH);
-    if (!bonds || interface.setup().birth > 0.0) continue;
-    const double offset = std::abs(interface.setup().common_gap_offset);
-    const double limit = most_of_edge * (std::isfinite(edge) ? std::max(edge, offset) : offset);
-    if (!(limit > 0.0)) continue;
-    const StartGaps gaps = gaps_at_start(scene, interface, 0.0, limit);
-    if (gaps.above > 0 && std::isfinite(gaps.largest))
-      scene.warnings.push_back(at("/interfaces", i) + ": " + std::to_string(gaps.above) +
-                               " node(s) start bonded across an open gap, node " +
-                               std::to_string(gaps.farthest) + " across " + json(gaps.largest).dump());
-  }
+  const ilaw_instance_info& info = interface.info();
+  const bool bonds = (info.capabilities & ILAW_CAN_ADHERE) && !(info.permissions & ILAW_MAY_SKIP_FRESH);
+  if (!bonds || interface.setup().birth > 0.0) return "";
+  const double offset = std::abs(interface.setup().common_gap_offset);
+  const double limit = most_of_edge * (std::isfinite(edge) ? std::max(edge, offset) : offset);
+  if (!(limit > 0.0)) return "";
+  const StartGaps gaps = gaps_at_start(scene, interface, 0.0, limit);
+  if (gaps.above == 0 || !std::isfinite(gaps.largest)) return "";
+  return std::to_string(gaps.above) + " node(s) start bonded across an open gap, " + node(gaps.farthest) +
+         " across " + number(gaps.largest);
 }
-
-namespace {
 
 bool has_memory_in_seconds(const ilaw_law& law) {
   for (std::uint32_t i = 0; i < law.parameter_count; ++i)
@@ -200,26 +176,46 @@ bool has_memory_in_seconds(const ilaw_law& law) {
   return false;
 }
 
-}  // namespace
-
 // A window that holds hardly more than the impulse of one step.
-void warn_of_memory(Scene& scene) {
+std::string short_memory(const Scene& scene, const Interface& interface) {
   constexpr double least_steps = 2.0;
-  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
-    const Interface& interface = *scene.interfaces[i];
-    const auto& numbers = interface.setup().arguments.numbers;
-    const auto memory = numbers.find("memory");
-    const ilaw_law* law = interface.library().law(interface.setup().law);
-    if (!law || memory == numbers.end() || !has_memory_in_seconds(*law)) continue;
-    if (!(memory->second > 0.0) || memory->second >= least_steps * scene.dt) continue;
-    scene.warnings.push_back(at("/interfaces", i) + "/parameters/memory: found " +
-                             json(memory->second).dump() + ", less than two steps of " +
-                             json(scene.dt).dump() + ": whether a load that is not smooth breaks the bond " +
-                             "depends on where a step begins; only smaller steps help");
-  }
+  const auto& numbers = interface.setup().arguments.numbers;
+  const auto memory = numbers.find("memory");
+  const ilaw_law* law = interface.library().law(interface.setup().law);
+  if (!law || memory == numbers.end() || !has_memory_in_seconds(*law)) return "";
+  if (!(memory->second > 0.0) || memory->second >= least_steps * scene.dt) return "";
+  return "found " + number(memory->second) + ", less than two steps of " + number(scene.dt) +
+         ": whether a load that is not smooth breaks the bond depends on where a step begins; only smaller "
+         "steps help";
 }
 
-// Constant strain locks far earlier than hexahedra do.
+std::string unread_temperature(const Scene& scene, const Interface& interface) {
+  const InterfaceSetup& setup = interface.setup();
+  if (!setup.heat || !setup.heat->obstacle_temperature) return "";
+  if (interface.heat()->reads("counterpart_temperature")) return "";
+  const auto is_own = [&](const auto& one) { return one.get() == &interface; };
+  const auto number = std::find_if(scene.interfaces.begin(), scene.interfaces.end(), is_own);
+  const auto i = static_cast<std::size_t>(number - scene.interfaces.begin());
+  return "found " + scene.source["interfaces"][i]["obstacle"]["temperature"].dump() + ", which law '" +
+         setup.law + "' does not read: nothing is conducted";
+}
+
+struct InterfaceWarning {
+  const char* key;  // below the interface
+  std::string (*text)(const Scene&, const Interface&);
+};
+constexpr InterfaceWarning interface_warnings[] = {{"", overlap},
+                                                   {"/obstacle/normal", wrong_side},
+                                                   {"/against/nodes", partner_twice},
+                                                   {"/against/nodes", partner_aside},
+                                                   {"", open_bond},
+                                                   {"/parameters/memory", short_memory},
+                                                   {"/obstacle/temperature", unread_temperature}};
+
+// ---- bodies ---------------------------------------------------------------------------------------------
+
+// Full elements close to incompressibility can hardly bend. Constant strain locks far earlier than hexahedra
+// do.
 void warn_of_locking(Scene& scene) {
   constexpr double max_full_hexahedra = 0.49, max_full_tetrahedra = 0.4;
   const json& model = scene.source["model"];
@@ -239,16 +235,15 @@ void warn_of_locking(Scene& scene) {
   }
 }
 
-void warn_of_temperatures(Scene& scene) {
-  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
-    const Interface& interface = *scene.interfaces[i];
-    const InterfaceSetup& setup = interface.setup();
-    if (!setup.heat || !setup.heat->obstacle_temperature) continue;
-    if (interface.heat()->reads("counterpart_temperature")) continue;
-    const json& found = scene.source["interfaces"][i]["obstacle"]["temperature"];
-    scene.warnings.push_back(at("/interfaces", i) + "/obstacle/temperature: found " + found.dump() +
-                             ", which law '" + setup.law + "' does not read: nothing is conducted");
-  }
+}  // namespace
+
+void add_warnings(Scene& scene) {
+  warn_of_times(scene);
+  for (const InterfaceWarning& warning : interface_warnings)
+    for (std::size_t i = 0; i < scene.interfaces.size(); ++i)
+      if (const std::string text = warning.text(scene, *scene.interfaces[i]); !text.empty())
+        scene.warnings.push_back(at("/interfaces", i) + warning.key + ": " + text);
+  warn_of_locking(scene);
 }
 
 }  // namespace ilaw::host
