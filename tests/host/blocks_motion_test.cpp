@@ -1,7 +1,6 @@
 // Blocks in motion: wave speeds, the critical step, what is conserved, threads.
 #include "host_runner.hpp"
 
-#include <omp.h>
 #include <Eigen/Eigenvalues>
 
 #include <stdexcept>
@@ -151,47 +150,6 @@ TEST(FlyingBlock, KeepsItsMomentumAndItsAngularMomentum) {
     expect_conserved(law, "mean_dilatation", 0.3);
     expect_conserved(law, "mean_dilatation", 0.499);
   }
-}
-
-// ---- threads --------------------------------------------------------------------------------------------
-
-struct Motion {
-  Dofs u, v;
-  std::int64_t touched;
-};
-
-Motion motion_with(int threads, const json& source, int steps) {
-  const int before = omp_get_max_threads();
-  omp_set_num_threads(threads);
-  auto [scene, integrator] = simulation_of(source);
-  while (integrator.steps() < steps) integrator.step();
-  omp_set_num_threads(before);
-  return {integrator.displacement(), integrator.velocity(),
-          integrator.tally().status_counts[ILAW_STICK] + integrator.tally().status_counts[ILAW_SLIP]};
-}
-
-void expect_the_same_bits(const json& source, int steps) {
-  const Motion one = motion_with(1, source, steps);
-  EXPECT_GT(one.touched, 1000);
-  for (const int threads : {2, 3}) {
-    const Motion more = motion_with(threads, source, steps);
-    EXPECT_TRUE(one.u == more.u && one.v == more.v) << threads << " threads";
-  }
-}
-
-// 4761 contacts: more than are given to one thread.
-TEST(Threads, GiveTheBitsOfOneWhereTheInterfaceIsSharedOut) {
-  json model = block({1.0, 1.0, 0.05}, {68, 68, 2}, material("neo_hookean", 0.3));
-  model["blocks"][0]["velocity"] = {0.3, 0.1, -0.2};
-  expect_the_same_bits(
-      {{"model", model},
-       {"time", {{"cfl", 0.7}, {"end", 10.0}}},
-       {"interfaces",
-        {{{"law", "coulomb"},
-          {"parameters", {{"friction", 0.3}}},
-          {"nodes", "b.z_min"},
-          {"obstacle", {{"type", "sphere"}, {"center", {0.6, 0.5, -3.0}}, {"radius", 2.998}}}}}}},
-      40);
 }
 
 }  // namespace

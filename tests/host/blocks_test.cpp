@@ -128,36 +128,6 @@ TEST_P(BlockOf, PassesThePatchTest) {
   }
 }
 
-// Pulled along x and free to narrow, a linear block answers with E times strain times area.
-TEST(LinearBlock, HasYoungsModulusInUniaxialTension) {
-  const Solids block = block_of(linear);
-  const double strain = 1e-3;
-  const Eigen::Vector3d strains(strain, -poisson * strain, -poisson * strain);
-  const Dofs force = forces(block, linear_field(block, strains.asDiagonal()));
-  double pull = 0.0;
-  for (const int node : block.sets().at("b.x_max").nodes) pull -= force[3 * node];
-  EXPECT_NEAR(pull, young * strain * 0.72, 1e-16);
-  for (const int node : block.sets().at("b.y_max").nodes) EXPECT_NEAR(force[3 * node + 1], 0.0, 1e-17);
-}
-
-TEST_P(BlockOf, FeelsNoForceFromTranslation) {
-  const Solids block = block_of(GetParam());
-  const Dofs u = Eigen::Vector3d(3.0, -1.0, 7.0).replicate(block.node_count(), 1);
-  EXPECT_EQ(forces(block, u).cwiseAbs().maxCoeff(), 0.0);
-  EXPECT_EQ(block.potential(u), 0.0);
-}
-
-TEST_P(NeoHookeanBlock, FeelsNoForceFromAnyRotation) {
-  const Solids block = block_of(GetParam());
-  for (const double angle : {0.1, 1.0, 3.0}) {
-    const Eigen::Matrix3d turn =
-        Eigen::AngleAxisd(angle, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
-    EXPECT_LE(forces(block, linear_field(block, turn - Eigen::Matrix3d::Identity())).cwiseAbs().maxCoeff(),
-              1e-14)
-        << "angle " << angle;
-  }
-}
-
 // A turn of the deformed body turns its forces with it: f(Q (x + u) - x) = Q f(u).
 TEST_P(NeoHookeanBlock, TurnsItsForcesWithTheBody) {
   std::mt19937_64 random(2);
@@ -172,21 +142,6 @@ TEST_P(NeoHookeanBlock, TurnsItsForcesWithTheBody) {
       exact.segment<3>(3 * node) = (turn * exact.segment<3>(3 * node)).eval();
     }
     EXPECT_LE((forces(block, turned) - exact).cwiseAbs().maxCoeff(), 1e-13) << "draw " << draw;
-  }
-}
-
-// Central differences of the potential along random directions: error of order step^2 and of rounding over
-// step.
-TEST_P(BlockOf, HasForcesThatAreTheGradientOfItsPotential) {
-  std::mt19937_64 random(3);
-  const Solids block = block_of(GetParam());
-  constexpr double step = 1e-5;
-  for (int draw = 0; draw < 50; ++draw) {
-    const Dofs u = random_field(block, 0.05, random), direction = random_field(block, 1.0, random);
-    const double slope =
-        (block.potential(u + step * direction) - block.potential(u - step * direction)) / (2.0 * step);
-    const double exact = -forces(block, u).dot(direction);
-    EXPECT_NEAR(slope, exact, 1e-6) << draw;
   }
 }
 
@@ -216,23 +171,10 @@ TEST(MeanDilatation, HasTheExactEnergyOfATrilinearField) {
   EXPECT_NEAR(block.potential(u), full.potential(u) - saved, 1e-14);
 }
 
-// For small strains both materials are the same, to the square of the strain.
-TEST_P(NeoHookeanBlock, IsLinearElasticForSmallStrains) {
-  std::mt19937_64 random(4);
-  const Solids small = block_of({MaterialLaw::linear, GetParam().second}), block = block_of(GetParam());
-  const Dofs field = random_field(block, 1.0, random);
-  std::vector<double> sizes, errors;
-  for (const double size : {4e-4, 2e-4, 1e-4}) {
-    sizes.push_back(size);
-    errors.push_back((forces(block, size * field) - forces(small, size * field)).norm());
-  }
-  EXPECT_NEAR(order(sizes, errors), 2.0, 0.02);
-}
-
 // The stiffness, column by column: symmetric, and zero for the six motions of a rigid body alone, so no
 // hourglass modes.
 TEST_P(BlockOf, HasASymmetricStiffnessWithSixRigidMotions) {
-  if (GetParam().first != MaterialLaw::linear) GTEST_SKIP() << "linear for small strains, tested above";
+  if (GetParam().first != MaterialLaw::linear) GTEST_SKIP() << "its stress is that of the patch test";
   for (const std::array<int, 3>& elements : {std::array{1, 1, 1}, std::array{3, 2, 1}}) {
     const Solids block = block_of(GetParam(), elements);
     const Eigen::Index size = block.mass().size();

@@ -52,25 +52,6 @@ TEST(Driven, HalfABlockMovesAsTheWholeOne) {
     }
 }
 
-// The shipped half: its floor carries half of what the whole block's carries, and both corners move alike.
-// At rest that is the weight.
-TEST(Driven, HalfOfTheShippedBlockMovesAsTheWhole) {
-  json source = shipped("half_model");
-  for (const double cfl : {0.7, 0.53, 0.89}) {
-    GIVEN(cfl);
-    source["time"]["cfl"] = cfl;
-    const Ran run = ran(source);
-    for (const char* axis : {"0", "2"})
-      EXPECT_THAT(run[std::string("n229.u") + axis],
-                  Pointwise(DoubleNear(1e-12), run[std::string("n8.u") + axis]));
-    for (std::size_t k = 0; k < run.rows(); ++k)
-      EXPECT_NEAR(2.0 * run["floor_2.F2"][k], run["floor.F2"][k], 1e-9) << k;
-    EXPECT_THAT(run["n8.u0"], Contains(Gt(1e-3))) << "the block widens";
-    EXPECT_NEAR(run.last("floor.F2"), 1000.0 * 0.2 * 0.1 * 0.1 * 10.0, 1e-2);
-    EXPECT_LT(run.energy("balance_error"), 1e-12);
-  }
-}
-
 // A node that is driven along x meets a facet whose nodes there are, too, but for a part of 1e-9: laws are
 // given an H along x that they resolve.
 TEST(Driven, NodeMayMeetAFacetThatIsNearlyDriven) {

@@ -162,26 +162,6 @@ TEST(Prestress, EndsTheRunWhereItIsNotFound) {
                              HasSubstr(", expected at most 1e-06"))));
 }
 
-TEST(Prestress, ResumesToTheSameBytes) {
-  const auto folder = fresh_folder();
-  json source = column(0.9);
-  const auto run = [&](const std::string& out, double end, const std::string& options) {
-    source["time"]["end"] = end;
-    const Outcome outcome =
-        run_program("run " + written(source, folder) + " --out " + (folder / out).string() + " " + options);
-    EXPECT_EQ(outcome.code, 0) << outcome.output;
-    return text_of(folder / out / "history.csv");
-  };
-  const std::string whole = run("whole", 0.2, "");
-  run("parts", 0.07, "--checkpoint-every 10");
-  EXPECT_EQ(run("parts", 0.2, "--checkpoint-every 10 --resume"), whole);
-  source["prestress"]["tolerance"] = 1e-3;
-  EXPECT_EQ(
-      run_program("run " + written(source, folder) + " --out " + (folder / "parts").string() + " --resume")
-          .code,
-      2);
-}
-
 // The shipped seal is squeezed before the run: its lid presses with A E e/(1 - nu^2) from the start, and with
 // nu/(1 - nu) of the fluid's force at the end.
 TEST(Prestress, SealPressesFromTheStart) {

@@ -179,23 +179,6 @@ TEST(Border, DoesNotCatchWhatFallsPast) {
   EXPECT_EQ(ran(source).summary["forces"]["joint"]["impulse"][2].get<double>(), 0.0);
 }
 
-// The facets touched in the last step are part of a checkpoint: a stack on the border goes on to the same
-// bits.
-TEST(Border, IsTheSameAfterACheckpoint) {
-  json source = moved_stack(1e-2);
-  source["time"]["end"] = 0.35;
-  auto [scene, one] = simulation_of(source);
-  auto [copy, other] = simulation_of(source);
-  while (one.steps() < scene.steps / 2) one.step();
-  std::stringstream checkpoint;
-  one.save(checkpoint);
-  other.load(checkpoint);
-  run_to_end(one, scene);
-  run_to_end(other, copy);
-  EXPECT_EQ(one.displacement(), other.displacement());
-  EXPECT_EQ(one.velocity(), other.velocity());
-}
-
 // At rest the floor carries the weight, friction holds what the plane of symmetry does, and then it is
 // shaken.
 TEST(SettledStack, RestsOnItsFloorAndIsShaken) {
