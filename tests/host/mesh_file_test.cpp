@@ -46,25 +46,47 @@ TEST(MeshFile, OfGmshNamesTheConverter) {
       "(Debian package python3-meshio)");
 }
 
-TEST(MeshFile, WithAnInvertedElementIsRefused) {
-  WrittenMesh mesh = two_cells();
-  std::swap(mesh.cells[1].nodes[0], mesh.cells[1].nodes[1]);
-  expect_refusal(refusal_of_mesh(mesh), "cell 1: found the scaled Jacobian -");
-  mesh = box_mesh({1, 1, 1}, {1, 1, 1}, true);
-  std::swap(mesh.cells[4].nodes[0], mesh.cells[4].nodes[1]);
-  expect_refusal(refusal_of_mesh(mesh), "cell 4: found the scaled Jacobian -");
-}
-
-TEST(MeshFile, WithAFlatElementIsRefused) {
-  WrittenMesh mesh = box_mesh({1, 1, 1}, {1, 1, 1}, true);
-  mesh.nodes[7] = mesh.nodes[3];
-  expect_refusal(refusal_of_mesh(mesh), "cell 0: found the scaled Jacobian ");
-}
-
-TEST(MeshFile, WithANodeOfNoElementIsRefused) {
-  WrittenMesh mesh = two_cells();
-  mesh.nodes.emplace_back(5, 5, 5);
-  expect_refusal(refusal_of_mesh(mesh), "node 12: found in no element, expected every node in one");
+TEST(MeshFile, ThatMakesNoBodyIsRefusedWithThePlace) {
+  struct Mistake {
+    bool tetrahedra;
+    std::function<void(WrittenMesh&)> make;
+    const char* expected;
+  };
+  const auto swap_in = [](std::size_t cell) {
+    return [cell](WrittenMesh& mesh) { std::swap(mesh.cells[cell].nodes[0], mesh.cells[cell].nodes[1]); };
+  };
+  const auto node_is = [](int node) { return [node](WrittenMesh& mesh) { mesh.cells[1].nodes[3] = node; }; };
+  for (const auto& [tetrahedra, make, expected] : std::vector<Mistake>{
+           {false, swap_in(1), "cell 1: found the scaled Jacobian -"},
+           {true, swap_in(4), "cell 4: found the scaled Jacobian -"},
+           {true, [](WrittenMesh& mesh) { mesh.nodes[7] = mesh.nodes[3]; },
+            "cell 0: found the scaled Jacobian "},
+           {false, [](WrittenMesh& mesh) { mesh.nodes.emplace_back(5, 5, 5); },
+            "node 12: found in no element, expected every node in one"},
+           {false, node_is(12), "cell 1: found node 12, expected 0 to 11"},
+           {false, node_is(-1), "cell 1: found node -1, expected 0 to 11"},
+           {false, node_is(2147483647), "cell 1: found node 2147483647, expected 0 to 11"},
+           {false, [](WrittenMesh& mesh) { mesh.cells.insert(mesh.cells.end(), 2, MeshCell(mesh.cells[1])); },
+            "found one face in all of them, expected a face in at most two elements"},
+           {false,
+            [](WrittenMesh& mesh) {
+              mesh.cells.push_back({CellKind::triangle, {0, 1, 11, 0, 0, 0, 0, 0}});
+            },
+            "cell 2: found a triangle that is a face of no element, expected one"},
+           {false,
+            [](WrittenMesh& mesh) {
+              mesh.cells = {{CellKind::quadrangle, {0, 1, 4, 3, 0, 0, 0, 0}}};
+            },
+            "found no elements, expected tetrahedra or hexahedra"},
+           {false,
+            [](WrittenMesh& mesh) {
+              mesh.of_cells["boundary"] = {0, 1};
+            },
+            "array 'boundary': found the name of a set that every mesh has"}}) {
+    WrittenMesh mesh = tetrahedra ? box_mesh({1, 1, 1}, {1, 1, 1}, true) : two_cells();
+    make(mesh);
+    expect_refusal(refusal_of_mesh(mesh), expected);
+  }
 }
 
 TEST(MeshFile, WithACellOfAnotherTypeIsRefused) {
@@ -75,42 +97,12 @@ TEST(MeshFile, WithACellOfAnotherTypeIsRefused) {
                  "cell 1: found VTK's cell type 13, expected elements with 4 or 8 nodes (types 10, 12)");
 }
 
-TEST(MeshFile, WithANodeOutOfRangeIsRefused) {
-  for (const int node : {12, -1, 2147483647}) {
-    WrittenMesh mesh = two_cells();
-    mesh.cells[1].nodes[3] = node;
-    expect_refusal(refusal_of_mesh(mesh),
-                   "cell 1: found node " + std::to_string(node) + ", expected 0 to 11");
-  }
-}
-
 TEST(MeshFile, WithAWrongNumberOfNodesIsRefused) {
   const MeshFile file([] {
     std::string text = two_cells().vtu();
     return text.replace(text.rfind("8 16"), 4, "7 16");
   }());
   expect_refusal(refusal_of(scene_with(file.path())), "cell 0: found 7 nodes, expected 8");
-}
-
-TEST(MeshFile, WithAFaceOfThreeElementsIsRefused) {
-  WrittenMesh mesh = two_cells();
-  mesh.cells.push_back(mesh.cells[1]);
-  mesh.cells.push_back(mesh.cells[1]);
-  expect_refusal(refusal_of_mesh(mesh),
-                 "found one face in all of them, expected a face in at most two elements");
-}
-
-TEST(MeshFile, WithATriangleOfNoElementIsRefused) {
-  WrittenMesh mesh = two_cells();
-  mesh.cells.push_back({CellKind::triangle, {0, 1, 11, 0, 0, 0, 0, 0}});
-  expect_refusal(refusal_of_mesh(mesh),
-                 "cell 2: found a triangle that is a face of no element, expected one");
-}
-
-TEST(MeshFile, WithoutElementsIsRefused) {
-  WrittenMesh mesh = two_cells();
-  mesh.cells = {{CellKind::quadrangle, {0, 1, 4, 3, 0, 0, 0, 0}}};
-  expect_refusal(refusal_of_mesh(mesh), "found no elements, expected tetrahedra or hexahedra");
 }
 
 TEST(MeshFile, WithAnInfiniteCoordinateIsRefused) {
@@ -137,12 +129,6 @@ TEST(MeshFile, WithoutTheSetOfASceneNamesThoseThereAre) {
       refusal_of(scene),
       "/loads/0/surface: found \"b.top\", expected one of b.boundary, b.x_max, b.x_min, b.y_max, b.y_min, "
       "b.z_max, b.z_min");
-}
-
-TEST(MeshFile, WithASetOfATakenNameIsRefused) {
-  WrittenMesh mesh = two_cells();
-  mesh.of_cells["boundary"] = {0, 1};
-  expect_refusal(refusal_of_mesh(mesh), "array 'boundary': found the name of a set that every mesh has");
 }
 
 // ---- sets -----------------------------------------------------------------------------------------------
