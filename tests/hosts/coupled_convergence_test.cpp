@@ -59,14 +59,8 @@ struct Assembly {
     batch.status = status.data();
     batch.status_stride = 1;
     law.initialise(batch);
-    ilaw_bodies bodies{};
-    bodies.struct_size = sizeof bodies;
-    bodies.dimension = 3;
-    bodies.count = bodies.owned_count = static_cast<std::int64_t>(v.size() / 3);
-    bodies.inverse_mass = ilaw::input(inverse_mass.data(), 1, 0);
-    bodies.v_free = ilaw::input(v.data(), 3, 1);
-    bodies.v_previous = ilaw::input(still.data(), 3, 1);
-    bodies.velocity = ilaw::output(velocity.data(), 3, 1);
+    ilaw_bodies bodies = coupled_scene::bodies_of(v.size() / 3, ilaw::input(inverse_mass.data(), 1, 0),
+                                                  v.data(), still.data(), velocity.data());
     if (rotate) {
       bodies.inverse_inertia = ilaw::input(inverse_inertia.data(), 6, 1);
       bodies.spin_free = bodies.spin_previous = ilaw::input(still.data(), 3, 1);
@@ -462,33 +456,18 @@ TEST(CoupledConvergence, NamesIncompatibleLawsAtOneBody) {
       normal{0, 0, 1, 0, 0, 1};
   const double gap = 0.0, area = 1.0;
   const std::vector<std::int32_t> body{0, 0, 1}, wall{-1, -1, -1};
-  const auto batch_of = [&](std::int64_t count, double* r) {
-    ilaw_batch batch{};
-    batch.struct_size = sizeof batch;
-    batch.node_count = count;
-    batch.time = batch.velocity_step = batch.position_step = 1e-3;
-    batch.gap = ilaw::input(&gap, 0, 0);
-    batch.area = ilaw::input(&area, 0, 0);
-    batch.normal = ilaw::input(normal.data(), 3, 1);
-    batch.state_in = ilaw::input(state.data(), 8, 1);
-    batch.state_out = ilaw::output(state.data(), 8, 1);
-    batch.impulse = ilaw::output(r, 3, 1);
-    return batch;
-  };
-  const ilaw_batch ties = batch_of(2, impulse.data()), contact = batch_of(1, heavy_impulse.data());
+  using coupled_scene::batch_of;
+  const ilaw_batch ties = batch_of(pinched.law, 2, 1e-3, gap, area, normal.data(), state, impulse.data()),
+                   contact =
+                       batch_of(heavy.law, 1, 1e-3, gap, area, normal.data(), state, heavy_impulse.data());
   ASSERT_EQ(pinched.law.initialise(ties), ILAW_OK);
   ilaw_contacts first = ilaw::contacts_of(pinched.law, ILAW_DELASSUS_SCALAR, ties, body.data(), wall.data());
   first.wall_velocity = ilaw::input(walls.data(), 3, 1);
   const ilaw_contacts second =
       ilaw::contacts_of(heavy.law, ILAW_DELASSUS_SCALAR, contact, body.data() + 2, wall.data());
-  ilaw_bodies bodies{};
-  bodies.struct_size = sizeof bodies;
-  bodies.dimension = 3;
-  bodies.count = bodies.owned_count = 2;
-  bodies.inverse_mass = ilaw::input(inverse_mass.data(), 1, 0);
   const std::vector<double> v_free = v;
-  bodies.v_free = bodies.v_previous = ilaw::input(v_free.data(), 3, 1);
-  bodies.velocity = ilaw::output(v.data(), 3, 1);
+  const ilaw_bodies bodies = coupled_scene::bodies_of(2, ilaw::input(inverse_mass.data(), 1, 0),
+                                                      v_free.data(), v_free.data(), v.data());
   const ilaw_contacts* groups[] = {&first, &second};
   ilaw::coupled solver;
   const ilaw_coupled_report report = solver.solve(bodies, groups, {});

@@ -230,19 +230,11 @@ TEST(Made, ColumnHasNotStalledBesideOthers) {
       below.push_back(i >= count ? -1 : i - 1);
     }
     const double gap = 0.0, inverse_mass = 1.0;
-    ilaw_batch batch{};
-    batch.struct_size = sizeof batch;
-    batch.node_count = count + more;
-    batch.time = batch.velocity_step = batch.position_step = 1e-3;
-    batch.gap = ilaw::input(&gap, 0, 0);
-    batch.normal = ilaw::input(normal.data(), 3, 1);
-    batch.impulse = ilaw::output(impulse.data(), 3, 1);
-    ilaw_bodies bodies{};
-    bodies.struct_size = sizeof bodies;
-    bodies.dimension = 3;
-    bodies.count = bodies.owned_count = count + more;
-    bodies.inverse_mass = ilaw::input(&inverse_mass, 0, 0);
-    bodies.v_free = bodies.v_previous = ilaw::input(v.data(), 3, 1);
+    std::vector<double> state;
+    const ilaw_batch batch = coupled_scene::batch_of(law, body.size(), 1e-3, gap, inverse_mass, normal.data(),
+                                                     state, impulse.data());
+    const ilaw_bodies bodies =
+        coupled_scene::bodies_of(body.size(), ilaw::input(&inverse_mass, 0, 0), v.data(), v.data(), nullptr);
     ilaw_coupled_options options{};
     options.most_sweeps = 120;
     const ilaw_coupled_report report = ilaw::coupled().solve(
@@ -264,13 +256,8 @@ struct Held {
     const std::array<double, 3> v_free = v;
     ilaw_batch batch = coupled_scene::batch_of(law, 1, 1e-3, gap, area, n.data(), state, impulse.data());
     EXPECT_EQ(law.initialise(batch), ILAW_OK);
-    ilaw_bodies bodies{};
-    bodies.struct_size = sizeof bodies;
-    bodies.dimension = 3;
-    bodies.count = bodies.owned_count = 1;
-    bodies.inverse_mass = ilaw::input(inverse_mass.data(), 0, 1);
-    bodies.v_free = bodies.v_previous = ilaw::input(v_free.data(), 3, 1);
-    bodies.velocity = ilaw::output(velocity.data(), 3, 1);
+    const ilaw_bodies bodies = coupled_scene::bodies_of(1, ilaw::input(inverse_mass.data(), 0, 1),
+                                                        v_free.data(), v_free.data(), velocity.data());
     try {
       const ilaw_coupled_report report =
           ilaw::coupled().solve(bodies, ilaw::contacts_of(law, ILAW_DELASSUS_FULL, batch, &body, &wall));
@@ -331,13 +318,8 @@ struct Groove {
     velocity = {0.0, 0.0, -speed};
     const std::array<double, 3> v_free = velocity;
     ilaw_batch batch = coupled_scene::batch_of(law, 2, step, gap, area, normal.data(), state, impulse.data());
-    ilaw_bodies bodies{};
-    bodies.struct_size = sizeof bodies;
-    bodies.dimension = 3;
-    bodies.count = bodies.owned_count = 1;
-    bodies.inverse_mass = ilaw::input(&inverse_mass, 0, 0);
-    bodies.v_free = bodies.v_previous = ilaw::input(v_free.data(), 3, 1);
-    bodies.velocity = ilaw::output(velocity.data(), 3, 1);
+    const ilaw_bodies bodies = coupled_scene::bodies_of(1, ilaw::input(&inverse_mass, 0, 0), v_free.data(),
+                                                        v_free.data(), velocity.data());
     return ilaw::coupled().solve(
         bodies, ilaw::contacts_of(law, ILAW_DELASSUS_SCALAR, batch, body.data(), wall.data()), options);
   }

@@ -58,6 +58,20 @@ inline ilaw_batch batch_of(const ilaw::interface& law, std::size_t count, double
   return batch;
 }
 
+// Bodies that do not turn, in three dimensions.
+inline ilaw_bodies bodies_of(std::size_t count, const ilaw_input& inverse_mass, const double* v_free,
+                             const double* v_previous, double* velocity) {
+  ilaw_bodies bodies{};
+  bodies.struct_size = sizeof bodies;
+  bodies.dimension = 3;
+  bodies.count = bodies.owned_count = static_cast<std::int64_t>(count);
+  bodies.inverse_mass = inverse_mass;
+  bodies.v_free = ilaw::input(v_free, 3, 1);
+  bodies.v_previous = ilaw::input(v_previous, 3, 1);
+  bodies.velocity = ilaw::output(velocity, 3, 1);
+  return bodies;
+}
+
 // Equal spheres with rotation, and contacts between them and with walls, all of one law.
 struct Scene {
   explicit Scene(ilaw::interface law_of_all, std::size_t count)
@@ -83,35 +97,20 @@ struct Scene {
   }
 
   ilaw_batch batch() {
-    const auto size = static_cast<std::int64_t>(law.info().state_size);
-    ilaw_batch b{};
-    b.struct_size = sizeof b;
-    b.node_count = static_cast<std::int64_t>(body.size());
-    b.velocity_step = b.position_step = h;
+    ilaw_batch b = batch_of(law, body.size(), h, area, area, normal.data(), state, impulse.data());
     b.time = time;
     b.gap = ilaw::input(gap.data(), 1, 0);
-    b.normal = ilaw::input(normal.data(), 3, 1);
-    b.area = ilaw::input(&area, 0, 0);
-    b.state_in = ilaw::input(state.data(), size, 1);
-    b.state_out = ilaw::output(state.data(), size, 1);
-    b.impulse = ilaw::output(impulse.data(), 3, 1);
     if (form == ILAW_DELASSUS_TRANSVERSE_SPIN) b.moment = ilaw::output(moment.data(), 3, 1);
     b.energy = ilaw::output(energy.data(), 4, 1);
     return b;
   }
 
   ilaw_bodies bodies() {
-    ilaw_bodies b{};
-    b.struct_size = sizeof b;
-    b.dimension = 3;
-    b.count = b.owned_count = static_cast<std::int64_t>(v.size() / 3);
-    b.inverse_mass = ilaw::input(&inverse_mass, 0, 0);
+    ilaw_bodies b =
+        bodies_of(v.size() / 3, ilaw::input(&inverse_mass, 0, 0), v.data(), v_before.data(), v.data());
     b.inverse_inertia = ilaw::input(&inverse_inertia, 0, 0);
-    b.v_free = ilaw::input(v.data(), 3, 1);
     b.spin_free = ilaw::input(w.data(), 3, 1);
-    b.v_previous = ilaw::input(v_before.data(), 3, 1);
     b.spin_previous = ilaw::input(w_before.data(), 3, 1);
-    b.velocity = ilaw::output(v.data(), 3, 1);
     b.spin = ilaw::output(w.data(), 3, 1);
     return b;
   }

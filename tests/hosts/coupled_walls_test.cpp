@@ -1,5 +1,7 @@
 // Walls and belts with velocities of their own, over a step and before it, at bodies of all kinds.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "coupled_scene.hpp"
+
 #include "support/law_runner.hpp"
 
 #include <gtest/gtest.h>
@@ -71,16 +73,9 @@ class Walls {
                               arms = of_contacts([](const Contact&c) { return c.side.arm; }),
                               other_arms = of_contacts([](const Contact&c) { return c.other.arm; });
     std::vector<double> impulses(normals.size()), state(interface.info().state_size * contacts.size() + 1);
-    ilaw_batch batch{};
-    batch.struct_size = sizeof batch;
-    batch.node_count = static_cast<std::int64_t>(contacts.size());
-    batch.time = batch.velocity_step = batch.position_step = h;
-    batch.gap = ilaw::input(&gap, 0, 0);
-    batch.normal = ilaw::input(normals.data(), 3, 1);
-    const auto state_size = static_cast<std::int64_t>(interface.info().state_size);
-    batch.state_in = ilaw::input(state.data(), state_size, 1);
-    batch.state_out = ilaw::output(state.data(), state_size, 1);
-    batch.impulse = ilaw::output(impulses.data(), 3, 1);
+    const double area = 1.0;
+    const ilaw_batch batch = coupled_scene::batch_of(interface, contacts.size(), h, gap, area, normals.data(),
+                                                     state, impulses.data());
     std::vector<std::int32_t> body, other;
     std::vector<double> weight, other_weight;
     for (const Contact& c : contacts) {
@@ -102,14 +97,8 @@ class Walls {
     const std::vector<double> v_free = flat(v), w_free = flat(w), v_previous = flat(v_before),
                               w_previous = flat(w_before);
     std::vector<double> velocity = v_free, spin = w_free;
-    ilaw_bodies bodies{};
-    bodies.struct_size = sizeof bodies;
-    bodies.dimension = 3;
-    bodies.count = bodies.owned_count = body_count;
-    bodies.inverse_mass = ilaw::input(inverse_mass.data(), 1, 0);
-    bodies.v_free = ilaw::input(v_free.data(), 3, 1);
-    bodies.v_previous = ilaw::input(v_previous.data(), 3, 1);
-    bodies.velocity = ilaw::output(velocity.data(), 3, 1);
+    ilaw_bodies bodies = coupled_scene::bodies_of(body_count, ilaw::input(inverse_mass.data(), 1, 0),
+                                                  v_free.data(), v_previous.data(), velocity.data());
     if (kind != Kind::points) {
       bodies.inverse_inertia =
           kind == Kind::spheres ? ilaw::input(inverse_mass.data(), 1, 0) : ilaw::input(tensors.data(), 6, 1);

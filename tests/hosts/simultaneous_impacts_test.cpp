@@ -1,6 +1,8 @@
 // Impacts with restitution at several contacts of a body in one step: which of them act, and with which
 // rebound, is decided without the impulses of the others (v_smooth of ilaw.h).
 // SPDX-License-Identifier: BSD-3-Clause
+#include "coupled_scene.hpp"
+
 #include "support/law_runner.hpp"
 
 #include <gtest/gtest.h>
@@ -44,14 +46,8 @@ struct Bodies {
   void advance(double gravity = 0.0) {
     const std::vector<Vector> v_before = v, w_before = w;
     for (Vector& velocity : v) velocity[2] -= h * gravity;
-    ilaw_bodies b{};
-    b.struct_size = sizeof b;
-    b.dimension = 3;
-    b.count = b.owned_count = static_cast<std::int64_t>(v.size());
-    b.inverse_mass = ilaw::input(&inverse_mass, 0, 0);
-    b.v_free = ilaw::input(v[0].data(), 3, 1);
-    b.v_previous = ilaw::input(v_before[0].data(), 3, 1);
-    b.velocity = ilaw::output(v[0].data(), 3, 1);
+    ilaw_bodies b = coupled_scene::bodies_of(v.size(), ilaw::input(&inverse_mass, 0, 0), v[0].data(),
+                                             v_before[0].data(), v[0].data());
     const ilaw_batch contacts = batch();
     ilaw_contacts c = ilaw::contacts_of(law, form, contacts, body.data(), counterpart.data());
     if (form == ILAW_DELASSUS_FULL) {
@@ -69,17 +65,10 @@ struct Bodies {
   }
 
   ilaw_batch batch() {
-    const auto size = static_cast<std::int64_t>(law.info().state_size);
-    ilaw_batch b{};
-    b.struct_size = sizeof b;
-    b.node_count = static_cast<std::int64_t>(body.size());
-    b.velocity_step = b.position_step = h;
+    ilaw_batch b = coupled_scene::batch_of(law, body.size(), h, inverse_mass, inverse_mass, normal[0].data(),
+                                           state, impulse[0].data());
     b.time = time;
     b.gap = ilaw::input(gap.data(), 1, 0);
-    b.normal = ilaw::input(normal[0].data(), 3, 1);
-    b.state_in = ilaw::input(state.data(), size, 1);
-    b.state_out = ilaw::output(state.data(), size, 1);
-    b.impulse = ilaw::output(impulse[0].data(), 3, 1);
     return b;
   }
   // Velocity of a contact along its normal.
