@@ -26,9 +26,9 @@ breathe_domain_by_extension = {"h": "c", "hpp": "cpp"}
 
 html_theme = "furo"
 html_title = f"ilaw {version}"
-html_static_path = [KATEX, "katex_formulas.js"]
+html_static_path = [KATEX, "katex_formulas.js", "language_tabs.js"]
 html_css_files = ["katex.min.css"]
-html_js_files = [("katex.min.js", {"defer": "defer"}), ("contrib/auto-render.js", {"defer": "defer"})]
+html_js_files = [("katex.min.js", {"defer": "defer"}), ("contrib/auto-render.js", {"defer": "defer"}), "language_tabs.js"]
 mathjax_path = "katex_formulas.js"
 mathjax_options = {"defer": "defer"}
 html_copy_source = False
