@@ -7,7 +7,7 @@ window.addEventListener("load", () => {
       const has = tabs.querySelector(`.highlight-${chosen}`);
       if (!has) continue;
       for (const part of tabs.children) {
-        if (language(part)) part.hidden = part !== has;
+        if (language(part)) part.style.display = part === has ? "" : "none"; // a theme outweighs hidden
         else for (const button of part.children) button.ariaPressed = button.value === chosen;
       }
     }
