@@ -11,7 +11,7 @@ for_tests=(gfortran binutils abigail-tools libgtest-dev libgmock-dev libbenchmar
 # Foreign solvers in which the laws are tested, and MPI. They are large: 1 GB with their dependencies.
 solvers=(lammps liblammps-dev libopenmpi-dev openmpi-bin python3-dolfinx python3-mpi4py yade libmujoco-dev calculix-ccx)
 dealii=(libdeal.ii-dev libopenmpi-dev openmpi-bin)  # 1.4 GB, so neither ci nor with-solvers has it
-documents=(pandoc mandoc man-db python3-jsonschema python3-license-expression)  # manual pages, the paper, the list of parts
+documents=(pandoc mandoc man-db python3-jsonschema python3-license-expression)  # manual pages, the list of parts
 site=(doxygen python3-breathe python3-myst-parser furo libjs-katex)  # docs/site/build.sh
 [ "${2:-}" != with-solvers ] || for_tests+=("${solvers[@]}")
 case ${1:-} in
