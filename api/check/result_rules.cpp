@@ -384,7 +384,7 @@ std::vector<Rule> result_rules() {
        "Without ILAW_CAN_ADHERE there is no tangential impulse and no moment where r_N = 0.",
        "ilaw.h, ILAW_CAN_ADHERE", Needs::motion, friction_needs_pressure},
       {"friction-cone",
-       "Where a law has a coefficient called friction (and friction_2), |r_T| of a status stick or "
+       "If a law has a coefficient called friction (and friction_2), |r_T| of a status stick or "
        "slip is at most the larger one times r_N.",
        "check.md, Names with a meaning", Needs::motion, cone},
       {"status-meaning",

@@ -420,7 +420,7 @@ std::vector<Rule> symmetry_rules() {
        "ilaw.h, ILAW_DELASSUS_SCALAR", Needs::motion, form_agreement},
       {"frame-indifference", "An impulse, and a moment, is the same in local axes and in those of the host.",
        "ilaw.h, ILAW_FRAME_GLOBAL", Needs::motion, frame_indifference},
-      {"frame-turned", "Where the whole model is turned, impulses and moments turn with it.",
+      {"frame-turned", "When the whole model is turned, impulses and moments turn with it.",
        "ilaw.h, ILAW_KIND_AXIS", Needs::motion, turned_whole},
       {"history-carried",
        "Without tangents a history is carried from normal to normal by the shortest rotation.",
