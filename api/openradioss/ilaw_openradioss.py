@@ -179,7 +179,7 @@ class Run:
         body_of = {n: k for k, n in enumerate(self.users)}
         self.weight = self.arrays["WEIGHT"][self.rows].astype(float)  # 1 on one rank for each node
         self.last_step, self.velocity_step, self.messages = step, 0.0, 0
-        self.energy, self.work, self.threads, self.solver = np.zeros(4), 0.0, threads, Solver()
+        self.energy, self.work, self.threads, self.solver = np.zeros(4), np.zeros(1), threads, Solver()
         x, count = self.arrays["X"][self.rows], len(self.users)
         self.free = np.ones((count, 3))
         self.groups = [group for group in self.groups if any(n in body_of for n in group.nodes)]
@@ -193,8 +193,8 @@ class Run:
         self.bodies = Bodies(v_free=self.v_free, v_previous=self.v_previous, inverse_mass=self.inverse_mass)
         self.open_state(time, Path(folder))
         suffix = "" if rank_variable("SIZE", "1") == "1" else "." + rank_variable("RANK", "0")
-        self.history = open(Path(folder, history + suffix), "w") if history else None
-        if self.history:
+        self.history = open(Path(folder, history + suffix), "a" if time > 0.0 else "w") if history else None
+        if self.history and not self.history.tell():
             own = [f"{group.name}.{c}" for group in self.groups for c in ("fx", "fy", "fz", "gap", "touching")]
             whole = ["friction", "impact", "rupture", "stored", "work", "iterations"]
             self.history.write(",".join(["time", *own, *whole]) + "\n")
@@ -216,10 +216,14 @@ class Run:
         if light:
             raise Refused(f"node {listed(light)}: has no mass, expected a mass above 0")
 
+    def kept(self):
+        """What a continued run needs beside the last step."""
+        return [self.energy, self.work, *(a for g in self.groups for a in (g.state, g.first, g.impulse))]
+
     def open_state(self, time, folder):
-        """States and impulses of the last step, in a file that fits the last restart file of the engine."""
+        """`kept` after the last step, in a file that fits the last restart file of the engine."""
         path = folder / f"ilaw_state_{rank_variable('RANK', '0')}.bin"
-        count = 2 + sum(group.state.size + group.impulse.size for group in self.groups)
+        count = 2 + sum(array.size for array in self.kept())
         if time > 0.0:
             saved = np.fromfile(path) if path.is_file() else np.empty(0)
             if saved.size != count or saved[0] != time:
@@ -227,7 +231,7 @@ class Run:
                 raise Refused(f"{path}: found {found}, expected {count} at time {time:.17g}: a continued run needs the "
                               "file of the run before, which ended with the restart file")
             self.velocity_step, at = saved[1], 2
-            for array in (array for group in self.groups for array in (group.state, group.impulse)):
+            for array in self.kept():
                 array[:] = saved[at:at + array.size].reshape(array.shape)
                 at += array.size
         # Mapped, since the engine ends without ending Python.
@@ -260,8 +264,7 @@ class Run:
         self.energy[3] = 0.0  # stored: of this step
         for group in self.groups:
             self.energy += self.weight[group.body[group.chosen]] @ group.contacts.energy
-        parts = [part.ravel() for group in self.groups for part in (group.state, group.impulse)]
-        self.memory[:] = np.concatenate([[time, velocity_step], *parts])
+        self.memory[:] = np.concatenate([[time, velocity_step], *(array.ravel() for array in self.kept())])
         if self.history:
             self.write_history(at, report)
 
@@ -279,7 +282,7 @@ class Run:
             own, one = self.weight[group.body[group.chosen]], group.contacts
             row += [*(own @ one.impulse / self.velocity_step), group.gap[group.chosen].min(initial=np.inf),
                     own @ (one.status != ilaw.Status.FREE)]  # fmt: skip
-        row += [*self.energy, self.work, report.sweeps]
+        row += [*self.energy, *self.work, report.sweeps]
         self.history.write(",".join(f"{value:.12g}" for value in row) + "\n")
         self.history.flush()
 

@@ -164,7 +164,7 @@ def test_a_bond_between_bars_takes_its_toughness(tmp_path):
     assert hook.run.energy[ilaw.Energy.RUPTURE] == pytest.approx(4 * area * 10.0, rel=1e-9)
 
 
-def test_a_bond_between_bars_is_continued_with_the_same_bits(tmp_path):
+def test_a_bond_between_bars_is_continued_with_the_same_bits_and_its_history(tmp_path):
     def parts(folder):
         folder.mkdir()
         engine = bar_engine([(0.0, 2.0), (-LENGTH, -2.0)], cells=20)
@@ -172,7 +172,7 @@ def test_a_bond_between_bars_is_continued_with_the_same_bits(tmp_path):
         right, left = ([int(u) for u in face(engine, 0.0) if (u <= n) == is_right] for is_right in (True, False))
         bond = dict(law="cohesive", strength=1e7, toughness=50.0, area=1e-4, nodes=right)
         bond["facets"] = [[left[k] for k in QUAD]]
-        return engine, lambda: Hook(folder, [bond])
+        return engine, lambda: Hook(folder, [bond], history="history.csv")
 
     steps = [1e-6, 1.1e-6] * 100
     engine, hook = parts(tmp_path / "whole")
@@ -181,6 +181,8 @@ def test_a_bond_between_bars_is_continued_with_the_same_bits(tmp_path):
     traced(engine, hook(), steps[:77])
     rest = traced(engine, hook(), steps[77:])
     assert all((a[77:] == b).all() for a, b in zip(whole[1:], rest[1:]))
+    tables = [(tmp_path / name / "history.csv").read_text() for name in ("whole", "parts")]
+    assert tables[0] == tables[1], "energies of both runs, gaps of the nodes in reach"
 
 
 def test_nodes_out_of_reach_cost_nothing_and_are_found_in_time(tmp_path):
