@@ -9,9 +9,12 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 programs=("$OPENRADIOSS"/exec/starter_* "$OPENRADIOSS"/exec/engine_*)
 [ -x "${programs[0]}" ] || { echo "${programs[0]}: no program, expected OPENRADIOSS/exec/starter_*" >&2; exit 2; }
 starter=${STARTER:-$(ls "$OPENRADIOSS"/exec/starter_* | head -1)} engine=${ENGINE:-$(ls "$OPENRADIOSS"/exec/engine_* | head -1)}
-folder=${1:-$(mktemp -d)}
+folder=$(realpath "${1:-$(mktemp -d)}")
 export RAD_CFG_PATH=${RAD_CFG_PATH:-$OPENRADIOSS/hm_cfg_files}
 export RAD_PYTHON_PATH=${RAD_PYTHON_PATH:-$(python3 -c 'import sysconfig as s; print(s.get_config_var("LIBDIR") + "/" + s.get_config_var("INSTSONAME"))')}
+# Whatever RAD_PYTHON_PATH names, OpenRadioss then goes on to the first of libpython3.12.so, 3.11, ... that loads.
+mkdir -p "$folder/python" && ln -sf "$RAD_PYTHON_PATH" "$folder/python/libpython3.12.so"
+export LD_LIBRARY_PATH=$folder/python:${LD_LIBRARY_PATH:-}
 export PYTHONPATH=$here/..:${PYTHONPATH:-}
 failed=0
 for case in slide impact two_bars peel; do

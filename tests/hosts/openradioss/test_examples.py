@@ -120,6 +120,19 @@ def test_run_says_what_it_needs():
     assert done.returncode == 2 and "expected OPENRADIOSS/exec/starter_" in done.stderr
 
 
+def test_run_leads_openradioss_to_one_python(tmp_path):
+    """It reads RAD_PYTHON_PATH, and then takes the first libpython3.12.so, 3.11, ... that loads, or none."""
+    programs = tmp_path / "exec"
+    programs.mkdir()
+    for name in ("starter", "engine"):
+        stub = programs / f"{name}_stub"
+        stub.write_text('#!/bin/sh\nreadlink "${LD_LIBRARY_PATH%%:*}/libpython3.12.so" >>../found\n')
+        stub.chmod(0o755)
+    environment = os.environ | dict(OPENRADIOSS=str(tmp_path), RAD_PYTHON_PATH="/of/libpython3.x.so")
+    subprocess.run([EXAMPLES / "run.sh", "runs"], cwd=tmp_path, env=environment, capture_output=True)
+    assert (tmp_path / "runs/found").read_text() == 8 * "/of/libpython3.x.so\n"
+
+
 @pytest.mark.skipif("OPENRADIOSS" not in os.environ, reason="no OpenRadioss: OPENRADIOSS names its folder")
 def test_the_cases_run_in_openradioss(tmp_path):
     done = subprocess.run([EXAMPLES / "run.sh", tmp_path], capture_output=True, text=True)
