@@ -12,10 +12,7 @@ namespace {
 
 using ilaw::lammps::Vector;
 
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+using ilaw::shapes::cross, ilaw::shapes::dot, ilaw::shapes::plus;
 constexpr double parallel_tolerance = 1e-12;  // of the sine of an angle
 
 }  // namespace
@@ -74,37 +71,23 @@ int FixIlawWall::read_own(const std::vector<std::string>& words, std::size_t at)
   return static_cast<int>(next - at);
 }
 
-Vector FixIlawWall::center(const Wall& wall) const {
-  Vector now = wall.point;
-  for (std::size_t c = 0; c < 3; ++c) now[c] += moved_time_ * wall.velocity[c];
-  return now;
-}
+Vector FixIlawWall::center(const Wall& wall) const { return plus(wall.point, wall.velocity, moved_time_); }
 
-double FixIlawWall::distance(const Wall& wall, const double* x, Vector& normal) const {
-  Vector from = center(wall);
-  for (std::size_t c = 0; c < 3; ++c) from[c] = x[c] - from[c];
-  const double along = dot(from, wall.direction);
-  if (wall.shape == Shape::plane) {
-    normal = wall.direction;
-    return along;
-  }
-  for (std::size_t c = 0; c < 3; ++c) from[c] -= along * wall.direction[c];  // a sphere has no axis
-  const double length = std::sqrt(dot(from, from));
-  const double sense = wall.inside ? -1.0 : 1.0;
-  for (std::size_t c = 0; c < 3; ++c) normal[c] = sense * from[c] / length;
-  return sense * (length - wall.radius);
+ilaw::shapes::surface FixIlawWall::surface(const Wall& wall, const Vector& x) const {
+  const Vector from = plus(x, center(wall), -1.0);
+  if (wall.shape == Shape::plane) return ilaw::shapes::plane(from, wall.direction);
+  const auto outside = wall.shape == Shape::sphere
+                           ? ilaw::shapes::sphere(from, wall.radius)
+                           : ilaw::shapes::cylinder(from, wall.direction, wall.radius);
+  return wall.inside ? ilaw::shapes::inside(outside) : outside;
 }
 
 // At the point of the wall that is nearest to an atom, where both are ahead by a time. Half a step ahead it
 // is the mean over the step to O(h^2): the two-step method of Adams and Bashforth for a grain that sticks.
-Vector FixIlawWall::velocity(const Wall& wall, int i, double distance, const Vector& normal,
-                             double ahead) const {
-  Vector from = center(wall);
-  for (std::size_t c = 0; c < 3; ++c)
-    from[c] = atom->x[i][c] - distance * normal[c] - from[c] + ahead * (atom->v[i][c] - wall.velocity[c]);
-  Vector now = cross(wall.spin, from);
-  for (std::size_t c = 0; c < 3; ++c) now[c] += wall.velocity[c];
-  return now;
+Vector FixIlawWall::velocity(const Wall& wall, int i, const Vector& nearest, double ahead) const {
+  const Vector v = {atom->v[i][0], atom->v[i][1], atom->v[i][2]};
+  const Vector arm = plus(plus(nearest, center(wall), -1.0), plus(v, wall.velocity, -1.0), ahead);
+  return ilaw::shapes::velocity(wall.velocity, wall.spin, arm);
 }
 
 void FixIlawWall::find() {
@@ -113,14 +96,17 @@ void FixIlawWall::find() {
     for (std::size_t w = 0; w < walls_.size(); ++w) {
       ilaw::lammps::ContactSet::Contact contact{};
       contact.arm = atom->radius[i];
-      const double apart = distance(walls_[w], atom->x[i], contact.normal);
+      const Vector x = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
+      const auto [apart, normal] = surface(walls_[w], x);
+      contact.normal = normal;
       contact.gap = apart - contact.arm;
       if (contact.gap >= contact.arm) continue;  // a wall's contacts begin one radius away
       contact.body = i;
       contact.counterpart = -1;
       contact.partner = -1.0 - static_cast<double>(w);
-      contact.wall_velocity = velocity(walls_[w], i, apart, contact.normal, 0.5 * update->dt);
-      contact.wall_previous = velocity(walls_[w], i, apart, contact.normal, -0.5 * update->dt);
+      const Vector nearest = plus(x, normal, -apart);
+      contact.wall_velocity = velocity(walls_[w], i, nearest, 0.5 * update->dt);
+      contact.wall_previous = velocity(walls_[w], i, nearest, -0.5 * update->dt);
       contact.wall_spin = walls_[w].spin;
       contact.area = area_ > 0.0 ? area_ : M_PI * contact.arm * contact.arm;
       contacts_->add(contact, row(i));

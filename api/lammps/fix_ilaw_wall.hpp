@@ -4,6 +4,8 @@
 
 #include "fix_ilaw.hpp"
 
+#include <ilaw/shapes.hpp>
+
 namespace LAMMPS_NS {
 
 class FixIlawWall : public FixIlaw {
@@ -29,9 +31,8 @@ class FixIlawWall : public FixIlaw {
   Vector read_vector(const std::vector<std::string>& words, std::size_t at);
   void find() override;
   Vector center(const Wall& wall) const;
-  // From the wall to a point, and the normal there.
-  double distance(const Wall& wall, const double* x, Vector& normal) const;
-  Vector velocity(const Wall& wall, int i, double distance, const Vector& normal, double ahead) const;
+  ilaw::shapes::surface surface(const Wall& wall, const Vector& x) const;
+  Vector velocity(const Wall& wall, int i, const Vector& nearest, double ahead) const;
 
   std::vector<Wall> walls_;
 };
