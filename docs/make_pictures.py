@@ -145,16 +145,21 @@ def gallery() -> Picture:
     return Picture("docs/img/gallery.png", lambda _: curves, draw, [scene_file(name) for name in make_gallery.SCENES])
 
 
+def viewer() -> bytes:
+    """The page that moving pictures are frames of."""
+    return b"".join((ROOT / "api/python/ilaw" / name).read_bytes() for name in ("view.html", "view.js"))
+
+
 def moving(name: str) -> Picture:
     path, every = make_moving.SCENES[name]
-    said = json.dumps([every, make_moving.FIELDS.get(name), make_moving.FRAMES]).encode()
+    said = json.dumps([every, make_moving.FIELDS.get(name), make_moving.FRAMES]).encode() + viewer()
     draw = functools.partial(make_moving.draw, name)
     return Picture(f"docs/img/moving_{name}.webp", lambda _: said, draw, [f"{path}.json"])
 
 
 def compared() -> Picture:
     said = json.dumps([make_compared.scene("law"), make_compared.scene("penalty"), make_compared.ROWS])
-    return Picture("docs/img/compared.webp", lambda _: said.encode(), make_compared.draw)
+    return Picture("docs/img/compared.webp", lambda _: said.encode() + viewer(), make_compared.draw)
 
 
 # ---- pictures of tables and sketches ---------------------------------------------------------------------------------
