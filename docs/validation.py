@@ -10,12 +10,13 @@ bound of its case.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import copy
 import dataclasses
+import functools
 import json
 import math
 import os
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -37,10 +38,9 @@ Scene = dict[str, Any]
 class Found:
     """What a run left: columns of history.csv, the summary, and events by interface."""
 
-    def __init__(self, folder: Path) -> None:
-        results = runs.Results(folder)
+    def __init__(self, results: runs.Results) -> None:
         self.columns, self.summary = results.history, results.summary
-        self.events = (folder / "events.csv").read_text(encoding="utf-8")
+        self.events = (results.folder / "events.csv").read_text(encoding="utf-8")
         self.time = self.columns["time"]
 
     def __getitem__(self, column: str) -> np.ndarray:
@@ -84,16 +84,17 @@ class Case:
         return abs(self.found(found) - exact) / (abs(exact) or 1.0)
 
 
+@functools.lru_cache(maxsize=None)
+def run_text(text: str) -> Found:
+    with tempfile.TemporaryDirectory(prefix="ilaw_") as folder, open(os.devnull, "w", encoding="utf-8") as quiet:
+        with contextlib.redirect_stdout(quiet):
+            results = runs.run(json.loads(text), Path(folder))
+        return Found(results)
+
+
 def run(scene: Scene) -> Found:
-    scene["output"]["events"] = True
-    program = os.environ.get("ILAW_PROGRAM", ROOT / "build/release/bin/ilaw")
-    with tempfile.TemporaryDirectory(prefix="ilaw_") as name:
-        folder = Path(name)
-        (folder / "scene.json").write_text(json.dumps(scene), encoding="utf-8")
-        done = subprocess.run([program, "run", folder / "scene.json", "--out", folder], capture_output=True, text=True)
-        if done.returncode != 0:
-            raise runs.RunFailed(done.stderr.strip())
-        return Found(folder)
+    """Several quantities of a scene take one run."""
+    return run_text(json.dumps({**scene, "output": {**scene["output"], "events": True}}))
 
 
 def with_penalty(scene: Scene, stiffness: float) -> Scene:
@@ -320,6 +321,7 @@ def main() -> int:
     parser.add_argument("names", nargs="*", metavar="NAME", help="cases; without any, all")
     parser.add_argument("--check", action="store_true", help="compare with the page")
     given = parser.parse_args()
+    os.environ.setdefault("ILAW_PROGRAM", str(ROOT / "build/release/bin/ilaw"))
     cases = [case for case in CASES if not given.names or case.name in given.names]
     if unknown := set(given.names) - {case.name for case in CASES}:
         parser.error(f"found {sorted(unknown)}, expected some of {sorted({case.name for case in CASES})}")

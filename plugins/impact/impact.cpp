@@ -69,7 +69,6 @@ struct impact {
       node.normal_gain = node.stored - positive_part(node.state.work);
     }
     node.state.work = found.work;
-    node.impulse.n = found.impulse;
     status_of<V> pressed = status::closed;
     if (any(friction > 0.0)) {
       const V kinetic = smaller(kinetic_friction, friction),
@@ -77,7 +76,8 @@ struct impact {
       const status_of<V> rubbed = apply_friction(node, found, restitution, now, kinetic, node.state.ratio);
       pressed = select(friction > 0.0, rubbed, pressed);
     }
-    return select(node.impulse.n > 0.0, pressed, status::free);
+    node.impulse.n = found.impulse;
+    return select(found.impulse > 0.0, pressed, status::free);
   }
 };
 

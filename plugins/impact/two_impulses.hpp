@@ -181,7 +181,8 @@ ILAW_KIT_INLINE auto rub_at_impact(const Node& node, const two_impulses<V>& impa
   return rubbing<Vector>{part * r, select(part < sticking_part, status_of<V>(status::slip), moved)};
 }
 
-// Friction for H = diag(h_N, h_T, h_T). Writes the impulse, returns the status.
+// Friction for H = diag(h_N, h_T, h_T). Writes the tangential impulse, returns the status where it is
+// pressed.
 template <class Node>
 ILAW_KIT_INLINE status_of<number_of<Node>> apply_friction(Node& node,
                                                           const two_impulses<number_of<Node>>& impact,
@@ -196,8 +197,7 @@ ILAW_KIT_INLINE status_of<number_of<Node>> apply_friction(Node& node,
     ratio = zero_unless(!rebounds, ratio);
   }
   node.impulse = found.impulse;
-  node.impulse.n = impact.impulse;
-  return select(impact.impulse > 0.0, found.status, status::free);
+  return found.status;
 }
 
 }  // namespace impact_law

@@ -186,8 +186,9 @@ def main():
     tried = [[study.penalty(factor) for factor in given.stiffness] for study in studies[:-1]]
     penalties = [min(results, key=error) for results in tried]
     factor = penalties[-1].factor
-    penalty = {study.cells: study.penalty(factor) for study in studies}
-    penalties.append(penalty[given.cells[-1]])
+    penalties.append(studies[-1].penalty(factor))
+    same = [next(r for r in results if r.factor == factor) for results in tried] + penalties[-1:]
+    penalty = dict(zip(given.cells, same))
     limits = {"coulomb": (limit, doubtful), "kinematic": limit_of(kinematic), f"penalty {factor:g}": limit_of(penalty)}
 
     say("| model | nodes | step [1e-3] | CPU [s] | error, normal | along | largest overlap [1e-3] | rebound | "
@@ -195,15 +196,15 @@ def main():
     for study, best in zip(studies, penalties):
         for name, result in ("coulomb", law[study.cells]), ("kinematic", kinematic[study.cells]), (None, best):
             say(row(name or f"penalty {best.factor:g}", study, result, limit, given.end))
-    say("\n| limit | from that of coulomb, normal | along | its doubt, normal | along |\n" + "| --- " * 5 + "|")
+    say("\n| limit | from coulomb's, normal | along | its doubt, normal | along |\n" + "| --- " * 5 + "|")
     for name, (own, before) in limits.items():
         distances = [difference(*pair, columns, given.end) for pair in ((own, limit), (before, own))
                      for columns in (NORMAL, ALONG)]  # fmt: skip
         say(f"| {name} | {percent(distances)} |")
     say("\n| stiffness | " + " | ".join(f"{study.nodes} nodes" for study in studies[:-1]) + " |\n"
         + "| --- " * len(studies) + "|")  # fmt: skip
-    for same in zip(*tried):
-        say(f"| {same[0].factor:g} | " + " | ".join(f"{100 * error(r):.1f} %, {r.seconds:.2g} s" for r in same) + " |")
+    for row_of in zip(*tried):
+        say(f"| {row_of[0].factor:g} | " + " | ".join(f"{100 * error(r):.1f} %, {r.seconds:.2g} s" for r in row_of) + " |")
 
 
 if __name__ == "__main__":
