@@ -12,7 +12,12 @@ Progress Iterations::run(Blocks& blocks, Progress progress, bool& stalled) {
   for (;;) {
     progress.scale = std::max(scale, progress.limits.speed);
     const std::uint32_t most = progress.limits.most;
-    const Outcome outcome = conjugate(blocks, progress, most <= few ? most : first_conjugate);
+    Outcome outcome = conjugate(blocks, progress, most <= few ? most : first_conjugate);
+    const bool away = progress.code >= 0 && runs_away(blocks, progress);
+    if (away && most <= few)
+      outcome = begin_again(blocks, progress);
+    else if (away && outcome == Outcome::solved)
+      outcome = Outcome::stalled;
     if (outcome == Outcome::spent && most >= least_few && most <= few && !ranks_.any())
       solve_islands(blocks, progress, stalled);
     if (outcome != Outcome::stalled) break;
@@ -22,6 +27,16 @@ Progress Iterations::run(Blocks& blocks, Progress progress, bool& stalled) {
   }
   stalled = stalled || progress.has_stalled();
   return progress;
+}
+
+// As many plain iterations, from no impulses.
+Outcome Iterations::begin_again(Blocks& blocks, Progress& progress) {
+  progress = progress.once_more(progress.limits.most);
+  read_impulses(blocks, image_);
+  std::fill(image_.begin(), image_.end(), 0.0);
+  return_to(blocks, progress, image_);
+  while (!progress.is_over() && !progress.is_done()) iterate(blocks, progress);
+  return progress.code < 0 ? Outcome::refused : progress.is_done() ? Outcome::solved : Outcome::spent;
 }
 
 void Iterations::iterate(Blocks& blocks, Progress& progress, const Sweep::Conjugate& conjugate) {
@@ -151,7 +166,7 @@ Outcome Iterations::anderson(Blocks& blocks, Progress& progress, std::uint32_t m
     if (ranks_.any()) keep_start();
     iterate(blocks, progress);
     if (progress.is_done()) return Outcome::solved;
-    if (progress.error() < much_less * best.error) {
+    if (progress.error() < much_less * best.error && !runs_away(blocks, progress)) {
       best.error = progress.error();
       read_impulses(blocks, best.impulses);
     }
@@ -190,36 +205,78 @@ void Iterations::return_to_image(Blocks& blocks) {
 // Anderson's acceleration goes on as long as each part of it lowers the residual to a tenth; then other
 // methods get a part, which grows from turn to turn. The best impulses of all are kept.
 Outcome Iterations::solve_island(Blocks& blocks, Progress& progress) {
+  constexpr double close = 1e-6;
   Best best;
+  read_impulses(blocks, best.impulses);
+  std::fill(best.impulses.begin(), best.impulses.end(), 0.0);
   --progress.limits.most;  // one iteration is left to return to the best impulses
+  if (runs_away(blocks, progress)) return_to(blocks, progress, best.impulses);
   // With ranks none of them has the whole system.
   const Outcome outcome = ranks_.any() ? anderson(blocks, progress, progress.limits.most, best)
                                        : take_turns(blocks, progress, best);
   ++progress.limits.most;
   if (outcome == Outcome::solved || progress.code < 0) return outcome;
-  if (best.error < progress.error()) return_to(blocks, progress, best.impulses);
+  if (best.error > close * progress.scale && !best.far_ones.empty())
+    return_to(blocks, progress, best.far_ones);
+  else if (best.error < progress.error() || runs_away(blocks, progress))
+    return_to(blocks, progress, best.impulses);
   return progress.is_done() ? Outcome::solved : Outcome::spent;
+}
+
+// Whether impulses are far larger than the momentum of the bodies: redundant contacts that press against each
+// other. Any multiple of such a pressure may solve the equations, and accelerated iterates run along it.
+bool Iterations::runs_away(const Blocks& blocks, const Progress& progress) {
+  constexpr double least_weight = 1e-3;
+  if (progress.size <= near * progress.scale) return false;
+  double most = 0.0, mass = 0.0;
+  for (const Block& block : blocks.list()) {
+    if (block.asleep) continue;
+    const Contacts& group = problem_.group(block);
+    with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
+      for (std::size_t q = 0; q < block.count; ++q) {
+        most = std::max(most, largest(block.at(block.layout->impulse, q)));
+        std::array<double, width_of<decltype(kernel)>> unit{};
+        std::copy_n(block.at(block.layout->normal, q).begin(), 3, unit.begin());
+        kernel.apply(q, unit, [&](std::int32_t body, const Vector& impulse, const Vector&) {
+          if (!problem_.bodies.is_movable(body)) return;
+          const double inverse = largest(problem_.bodies.inertia_of(body).inverse_mass);
+          const double weight = std::max(std::sqrt(dot(impulse, impulse)), least_weight);
+          if (inverse > 0.0) mass += 1.0 / (inverse * weight * weight);
+        });
+      }
+    });
+  }
+  ranks_.largest(&most, 1);
+  ranks_.sum(&mass, 1);
+  return most > near * mass * progress.scale;
 }
 
 Outcome Iterations::take_turns(Blocks& blocks, Progress& progress, Best& best) {
   constexpr std::uint32_t most_futile = 2;  // turns in a row that do not lower the error by a tenth
   std::uint32_t gauss_seidel_part = first_part, splitting_part = first_part;
   splitting_.reset();
+  const auto settles = [&](Outcome outcome) {
+    if (outcome != Outcome::solved) return false;
+    if (!runs_away(blocks, progress)) return true;
+    if (best.far_ones.empty() && progress.residual() <= progress.limits.tolerance)
+      read_impulses(blocks, best.far_ones);
+    return false;
+  };
   for (std::uint32_t turn = 0, futile = 0; !progress.is_over() && futile < most_futile; ++turn) {
     const double error_before = best.error;
     for (double before = Progress::infinity; !progress.is_over();) {
-      if (anderson(blocks, progress, gauss_seidel_part, best) == Outcome::solved) return Outcome::solved;
+      if (settles(anderson(blocks, progress, gauss_seidel_part, best))) return Outcome::solved;
       if (!(progress.square < 0.01 * before)) break;
       before = progress.square;
     }
     keep_best(blocks, progress, best);
     const bool grows = turn == 0 && grow_without_end(blocks, progress);
     if (grows) keep_best(blocks, progress, best);
-    if (newton(blocks, progress) == Outcome::solved) return Outcome::solved;
+    if (settles(newton(blocks, progress))) return Outcome::solved;
     keep_best(blocks, progress, best);
     // With acceleration, then without: both happen to run in circles.
     const std::size_t depth = turn % 2 == 0 ? Anderson::max_depth : 0;
-    if (splitting(blocks, progress, splitting_part, depth) == Outcome::solved) return Outcome::solved;
+    if (settles(splitting(blocks, progress, splitting_part, depth))) return Outcome::solved;
     keep_best(blocks, progress, best);
     if ((progress.grows = grows)) break;
     gauss_seidel_part *= 2;
@@ -266,6 +323,36 @@ bool Iterations::grows_along_normals(const Blocks& blocks) const {
       if (block.status[q] != ILAW_BONDED && largest(across) > part * size) return false;
       if (dot(by, block.at(block.layout->impulse, q)) < 0.0) return false;
     }
+  return std::all_of(blocks.list().begin(), blocks.list().end(), [&](const Block& b) { return stops(b); });
+}
+
+// Whether bonds stop their contacts, and would as well at the opposite velocity. One whose impulse must do no
+// work does so in one direction alone, so that a solution with smaller impulses may exist.
+bool Iterations::stops(const Block& block) const {
+  constexpr double part = 1e-6;
+  const Layout& layout = *block.layout;
+  if (block.asleep ||
+      std::find(block.status, block.status + block.count, ILAW_BONDED) == block.status + block.count)
+    return true;
+  Columns v_free{}, impulse{}, made{};
+  std::array<std::uint8_t, max_stride> status{};
+  std::vector<double> state(block.stride * static_cast<std::size_t>(layout.state_size) + 1);
+  for (const double sign : {1.0, -1.0}) {
+    for (std::size_t q = 0; q < block.count; ++q)
+      for (int c = 0; c < layout.width; ++c)
+        v_free[static_cast<std::size_t>(c) * max_stride + q] = sign * block.column(layout.asked + c)[q];
+    ilaw_report report{};
+    const Contacts::Call call{v_free.data(), block.column(layout.delassus),
+                              block.stride,  impulse.data(),
+                              state.data(),  status.data()};
+    if (problem_.group(block).evaluate(block, call, report) < 0) return false;
+    sweep_.respond(block, impulse.data(), max_stride, made.data());
+    for (std::size_t q = 0; q < block.count; ++q) {
+      const Vector velocity = columns_at<3>(v_free.data() + q, max_stride);
+      const Vector left = velocity + columns_at<3>(made.data() + q, max_stride);
+      if (block.status[q] == ILAW_BONDED && largest(left) > part * largest(velocity)) return false;
+    }
+  }
   return true;
 }
 
@@ -357,7 +444,7 @@ std::size_t Iterations::scales_of(const Blocks& blocks) {
 
 // Keeps the present impulses, or returns to the best ones.
 void Iterations::keep_best(Blocks& blocks, Progress& progress, Best& best) {
-  if (progress.error() <= best.error) {
+  if (progress.error() <= best.error && !runs_away(blocks, progress)) {
     best.error = progress.error();
     read_impulses(blocks, best.impulses);
   } else if (!progress.is_over()) {
@@ -384,11 +471,13 @@ void Iterations::read_impulses(const Blocks& blocks, std::vector<double>& impuls
 // Newton steps alone, beyond the iterations that the caller asks for.
 Outcome Iterations::solve_directly(Blocks& blocks, Progress& progress) {
   Best best;
-  keep_best(blocks, progress, best);
+  read_impulses(blocks, best.impulses);
+  best.error = progress.error();
   const std::uint32_t count = progress.count, most = progress.limits.most;
   progress.limits.most = count + most_direct;
   const Outcome outcome = newton(blocks, progress);
-  if (outcome != Outcome::solved && best.error < progress.error()) return_to(blocks, progress, best.impulses);
+  if ((outcome != Outcome::solved && best.error < progress.error()) || runs_away(blocks, progress))
+    return_to(blocks, progress, best.impulses);
   progress.count = count;
   progress.limits.most = most;
   return outcome;
@@ -404,6 +493,7 @@ Outcome Iterations::solve_islands(Blocks& blocks, Progress& progress, bool& stal
     stalled = stalled || progress.has_stalled();
     return outcome;
   }
+  const bool away = !is_direct && progress.size > near * progress.scale;
   std::vector<Progress> islands = progress_of_islands(blocks, progress);
   Progress all = islands.front();
   bool is_solved = true;
@@ -411,8 +501,10 @@ Outcome Iterations::solve_islands(Blocks& blocks, Progress& progress, bool& stal
     Progress& own = islands[static_cast<std::size_t>(island)];
     const double solved = is_direct ? std::max(own.limits.tolerance, far_off) : own.limits.tolerance;
     const bool is_large = is_direct && islands_.lanes(island).size() > small_island;
-    if (own.residual() > solved && !is_large) {
-      island_.select(blocks, islands_.lanes(island));
+    const bool needs_more = own.residual() > solved && !is_large;
+    if (needs_more || away) island_.select(blocks, islands_.lanes(island));
+    if (away) own.size = progress.size;
+    if (needs_more || (away && runs_away(island_, own))) {
       const Outcome outcome = is_direct ? solve_directly(island_, own) : solve_island(island_, own);
       is_solved = outcome == Outcome::solved && is_solved;
       island_.give_back(blocks);

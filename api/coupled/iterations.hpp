@@ -42,6 +42,8 @@ class Iterations {
   static constexpr std::uint32_t least_few = 10, most_direct = 20;
   static constexpr std::size_t small_island = 32;
   static constexpr double far_off = 1e-3;
+  // Times the momentum of the bodies: larger impulses press contacts against each other.
+  static constexpr double near = 16.0;
   // Iterations between looks for sleeping contacts that come within reach.
   static constexpr std::uint32_t wake_interval = 4;
   // Factor of the change with which impulses are better than the best, and are copied.
@@ -53,10 +55,12 @@ class Iterations {
   struct Best {
     double error = Progress::infinity;
     std::vector<double> impulses;
+    std::vector<double> far_ones;  // that solve the problem, but run away; empty: none
   };
 
   // One plain iteration, the same on all ranks.
   void iterate(Blocks& blocks, Progress& progress, const Sweep::Conjugate& conjugate = {});
+  Outcome begin_again(Blocks& blocks, Progress& progress);
   Outcome conjugate(Blocks& blocks, Progress& progress, std::uint32_t most);
   Outcome solve_islands(Blocks& blocks, Progress& progress, bool& stalled);
   Outcome solve_directly(Blocks& blocks, Progress& progress);
@@ -64,8 +68,10 @@ class Iterations {
   Outcome take_turns(Blocks& blocks, Progress& progress, Best& best);
   Outcome anderson(Blocks& blocks, Progress& progress, std::uint32_t most, Best& best);
   Outcome newton(Blocks& blocks, Progress& progress);
+  bool runs_away(const Blocks& blocks, const Progress& progress);
   bool grow_without_end(Blocks& blocks, Progress& progress);
   bool grows_along_normals(const Blocks& blocks) const;
+  bool stops(const Block& block) const;
   bool follow_growth(Blocks& blocks, Progress& progress);
   Outcome splitting(Blocks& blocks, Progress& progress, std::uint32_t most, std::size_t depth);
 
