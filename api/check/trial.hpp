@@ -114,7 +114,7 @@ struct Trial {
     return setup.floats() ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon();
   }
   // Bonds whose traction falls with their opening have several solutions where the step is too large for the
-  // fall (docs/theory/cohesive_step.md), and may refuse it.
+  // fall (docs/theory/bonds.md), and may refuse it.
   bool may_soften() const { return can(ILAW_CAN_ADHERE) && can(ILAW_CAN_STORE_ENERGY); }
   bool reads(std::uint32_t input) const { return (info.inputs & input) != 0; }
 

@@ -1,5 +1,5 @@
-// bond.hpp - a bond with contact and friction for any H: what it shares with others is here, what it is made
-// of is its law's. plugins/cohesive/cohesive.md derives the equations.
+// bond.hpp - the step common to all bonds, with contact and friction for any H. The law gives stiffness,
+// evolution and energy; docs/theory/bonds.md derives the equations.
 //
 // The bond acts on the mean of two positions, w = (x_n + x_n+1)/2, which a step moves by h (v^- + v)/2:
 //   w^+ = w^- + h (v^- + v)/2,  r_b = -h A k W (w^+ + w^-)/2,  W = diag(1, weight, weight).

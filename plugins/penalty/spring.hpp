@@ -1,4 +1,4 @@
-// spring.hpp - one step of the implicit normal spring, an equation with one unknown (penalty.md):
+// spring.hpp - one step of the implicit normal spring, one unknown (docs/theory/springs.md):
 //     r = h <S - c phi vbar>,  v = v_free + H r,  vbar = (v^- + v)/2,  way = h (vbar + tau <v - v^->),
 //     x' = <x - way>,  S = phi (P(x) - P(x'))/(x - x'),  P = k x^(p+1)/(p+1),  phi = min(1, x/way).
 // While v < v^- a linear spring takes its lead back, -h tau <v^- - v>, as far as W, the work withheld, lasts.

@@ -5,6 +5,7 @@ hang together (because, but, for example), and seldom use "that of" for a noun o
 
     tests/docs/english_test.py            runs the test
     tests/docs/english_test.py PAGE...    prints the sentences of these pages that break the rules
+    tests/docs/english_test.py --rates    prints the words of each part, and the rates per 1000 words of all pages
 """
 # SPDX-License-Identifier: BSD-3-Clause
 
@@ -23,7 +24,7 @@ CONDITION_AS_PLACE = re.compile(r"Where\b")
 # Pages that are rewritten with the code they describe; a page leaves this list when it has no offence.
 PENDING = set()
 # Pages of laws have these sections in this order.
-LAW_SECTIONS = ["Equations", "Parameters", "State", "Energy", "Limits", "Cost", "Example", "Sources"]
+LAW_SECTIONS = ["Equations", "Parameters", "State", "Energy", "Step", "Limits", "Cost", "Example", "Sources"]
 # Logbooks keep the words of the day on which they were written.
 LOGBOOKS = ROOT / "docs" / "log"
 
@@ -85,6 +86,30 @@ def offences(text):
             yield f"begins with '{sentence.split()[0]}': {sentence}"
 
 
+def rates(said):
+    """How often each pattern stands in 1000 words of these sentences."""
+    thousands = sum(words(sentence) for sentence in said) / 1000
+    count = {
+        "connectives": sum(len(CONNECTIVE.findall(sentence)) for sentence in said),
+        "that of, those of": sum(len(PRONOUN_OF.findall(sentence)) for sentence in said),
+        "Where first": sum(bool(CONDITION_AS_PLACE.match(sentence)) for sentence in said),
+    }
+    return {name: number / thousands for name, number in count.items()}
+
+
+def print_rates():
+    parts = {}
+    for page in [*pages(), *sorted(LOGBOOKS.glob("*.md"))]:
+        part = str(page.parent.relative_to(ROOT)) if page.parent != ROOT else page.name
+        part = "plugins" if part.startswith("plugins") else part
+        parts[part] = parts.get(part, 0) + sum(map(words, sentences(page.read_text())))
+    for part, number in sorted(parts.items()):
+        print(f"{number:7} {part}")
+    print(f"{sum(parts.values()) - parts[str(LOGBOOKS.relative_to(ROOT))]:7} all but logbooks")
+    for name, rate in rates([sentence for page in pages() for sentence in sentences(page.read_text())]).items():
+        print(f"{rate:7.2f} {name}")
+
+
 class English(unittest.TestCase):
     def test_pages_have_short_sentences_with_a_subject(self):
         self.assertGreater(len(pages()), 20)
@@ -96,11 +121,10 @@ class English(unittest.TestCase):
                 self.assertEqual(list(offences(page.read_text())), [])
 
     def test_pages_connect_sentences_and_repeat_nouns(self):
-        said = [sentence for page in pages() for sentence in sentences(page.read_text())]
-        thousands = sum(words(sentence) for sentence in said) / 1000
-        self.assertGreater(sum(len(CONNECTIVE.findall(sentence)) for sentence in said) / thousands, 6)
-        self.assertLess(sum(len(PRONOUN_OF.findall(sentence)) for sentence in said) / thousands, 1)
-        self.assertLess(sum(bool(CONDITION_AS_PLACE.match(sentence)) for sentence in said) / thousands, 0.2)
+        found = rates([sentence for page in pages() for sentence in sentences(page.read_text())])
+        self.assertGreater(found["connectives"], 6)
+        self.assertLess(found["that of, those of"], 0.2)
+        self.assertLess(found["Where first"], 0.2)
 
     def test_pages_of_laws_have_the_same_sections(self):
         laws = [page for page in pages() if page.parent.parent.name == "plugins"]
@@ -124,7 +148,9 @@ class English(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
+    if sys.argv[1:] == ["--rates"]:
+        print_rates()
+    elif len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
         for page in sys.argv[1:]:
             for offence in offences(Path(page).read_text()):
                 print(f"{page}: {offence}")
