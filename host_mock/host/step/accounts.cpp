@@ -30,18 +30,20 @@ constexpr double wrong_energy = 1e-3;
 // One by one: the bytes between them mean nothing, and equal runs write equal checkpoints.
 template <class Any, class Work>
 void for_each_member(Any& tally, Work work) {
-  for (auto* count : {&tally.active, &tally.skipped, &tally.sweeps, &tally.unconverged, &tally.left_surface})
+  for (auto* count : {&tally.active, &tally.skipped, &tally.sweeps, &tally.unconverged, &tally.worst_node,
+                      &tally.left_surface})
     work(*count);
   work(tally.sweeps_max);
   for (auto* value : {&tally.coupling_residual_max, &tally.coupling_tolerance, &tally.coupling_energy,
-                      &tally.penetration_max, &tally.stable_step})
+                      &tally.penetration_max, &tally.stable_step, &tally.viscous_step})
     work(*value);
   for (auto& count : tally.status_counts) work(count);
 }
 
 }  // namespace
 
-void Accounts::add_solution(const ilaw_coupled_report& solution, double tolerance) {
+void Accounts::add_solution(const ilaw_coupled_report& solution, double tolerance, std::int64_t worst_node) {
+  if (solution.message && solution.residual >= tally_.coupling_residual_max) tally_.worst_node = worst_node;
   tally_.coupling_tolerance = tolerance;
   tally_.sweeps += solution.sweeps;
   tally_.sweeps_max = std::max(tally_.sweeps_max, static_cast<int>(solution.sweeps));
@@ -140,6 +142,10 @@ bool Accounts::has_diverged(const Model& model, const Dofs& v, double speed, dou
 }
 
 std::string Accounts::step_warning(double dt) const {
+  if (dt > tally_.viscous_step)
+    return formatted(
+        "the time step is %g, where bulk viscosity is stable up to %g: a body is compressed too fast for it",
+        dt, tally_.viscous_step);
   if (!(dt > tally_.stable_step)) return "";
   return formatted(
       "the time step is %g, where a law is stable up to %g at its nodes: an explicit spring is too stiff for it",
@@ -150,17 +156,18 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
   std::vector<std::string> warnings;
   if (tally_.unconverged > 0 && tally_.coupling_energy > rounding_energy * energy.scale)
     warnings.push_back(formatted(
-        "contacts that share nodes are not solved in %lld of %lld steps, the start included: residual up to %.1e after %d sweeps, "
-        "expected %g; the energy is wrong by up to %.2g, where %.2g is the largest in the run",
+        "contacts that share nodes are not solved in %lld of %lld steps, the start included: residual up to %.1e at node %lld after %d "
+        "sweeps, expected %g; the energy is wrong by up to %.2g, where %.2g is the largest in the run",
         static_cast<long long>(tally_.unconverged), static_cast<long long>(steps) + 1,
-        tally_.coupling_residual_max, static_cast<int>(CoupledStep::most_sweeps), tally_.coupling_tolerance,
-        tally_.coupling_energy, energy.scale));
+        tally_.coupling_residual_max, static_cast<long long>(tally_.worst_node),
+        static_cast<int>(CoupledStep::most_sweeps), tally_.coupling_tolerance, tally_.coupling_energy,
+        energy.scale));
   if (tally_.left_surface > 0)
     warnings.push_back(formatted(
         "%lld node(s) went over the border of a surface while they touched it: beyond it nothing holds them; a node "
         "that shall stay needs a surface that reaches farther",
         static_cast<long long>(tally_.left_surface)));
-  if (dt > tally_.stable_step) warnings.push_back(step_warning(dt));
+  if (const std::string warning = step_warning(dt); !warning.empty()) warnings.push_back(warning);
   if (energy.kinetic > much_vibration * energy_.largest())
     warnings.push_back(formatted(
         "the kinetic energy is %.2g, where all that was put in is at most %.2g: the fastest vibration of the "

@@ -14,15 +14,6 @@
 namespace ilaw::host {
 namespace {
 
-void leave_driven_undamped(const Loads& loads, Eigen::Index d, const Dofs& undamped, Dofs& v, Dofs& impulse) {
-  for (const auto& load : loads)
-    for (const int node : load->prescribed_nodes())
-      for (const int axis : load->prescribed_axes()) {
-        v[node * d + axis] = undamped[node * d + axis];
-        impulse[node * d + axis] = 0.0;
-      }
-}
-
 // The vector that shows the divergence best, and its name.
 struct WildMotion {
   const char* name;
@@ -47,6 +38,15 @@ struct WildMotion {
 }
 
 }  // namespace
+
+void leave_driven_undamped(const Loads& loads, Eigen::Index d, const Dofs& undamped, Dofs& v, Dofs& impulse) {
+  for (const auto& load : loads)
+    for (const int node : load->prescribed_nodes())
+      for (const int axis : load->prescribed_axes()) {
+        v[node * d + axis] = undamped[node * d + axis];
+        impulse[node * d + axis] = 0.0;
+      }
+}
 
 void Integrator::step() {
   start();
@@ -179,6 +179,9 @@ void Integrator::correct(StepTimes step) {
       leave_driven_undamped(loads_, model_.dimension(), undamped, v_, kept.size() == 0 ? sum : kept);
     if (kept.size() != 0) sum += kept;
   }
+  if (const double step_limit = critical_step(model_, loads_, {u_, v_before_});
+      step_limit < model_.critical_step())
+    accounts_.note_viscous_step(step_limit);
 }
 
 // An impulse after a load. Damping by mass leaves all of it along driven axes, where a motion takes it.
@@ -194,7 +197,7 @@ Dofs Integrator::transmitted(std::size_t load, StepTimes step, const Dofs& impul
 // Interfaces act after the loads that correct velocities: H is 1/m times what those leave of a unit impulse,
 // 1/(m (1 + a)) with damping, a = rate h/2, and 0 where a motion drives.
 void Integrator::find_contact_mass(StepTimes step) {
-  Dofs left = Dofs::Ones(u_.size());
+  Dofs left = Dofs::Constant(u_.size(), 1.0 / (1.0 + relaxation_));
   for (const std::size_t k : correcting_) left = transmitted(k, step, left);
   if (contact_inverse_mass_.size() == 0 && (left.array() == 1.0).all()) return;
   contact_inverse_mass_ = left.cwiseProduct(inverse_mass_);
@@ -237,7 +240,7 @@ void Integrator::add_coupled_reactions(const StepView& step) {
     if (const std::string why = coupled_->explain(); !why.empty()) throw std::runtime_error(why);
   check_motion(largest_speed(v_, model_.dimension()), step.time);
   coupled_->accept(step, v_);
-  accounts_.add_solution(solution, coupled_->tolerance());
+  accounts_.add_solution(solution, coupled_->tolerance(), coupled_->worst_node());
 }
 
 void Integrator::take_heat() {

@@ -45,8 +45,12 @@ class Integrator {
 
   // The half step that a run starts with, from V_0 to V_{1/2}, as interfaces let it: what rests or is bonded
   // carries its load from time 0 on. The first step does it where nobody has; later calls do nothing. Throws
-  // as step(). told: of each step of the search for an equilibrium.
-  void start(const std::function<void(const PrestressReport&)>& told = {});
+  // as step().
+  void start();
+  bool has_started() const { return has_started_; }
+  // The equilibrium that a run with a prestress starts from; start() finds it where nobody has. told: of each
+  // step of the search.
+  void find_equilibrium(const std::function<void(const PrestressReport&)>& told = {});
   // One step. Throws ilaw::error when a law refuses a node, Diverged when the motion is not finite.
   void step();
   // Throws Diverged where the kinetic energy is far above what was put in. Each step does it, with more room.
@@ -106,9 +110,12 @@ class Integrator {
   double time_of(std::int64_t step) const { return begin_ + static_cast<double>(step) * dt_; }
   StepTimes start_times() const { return {begin_ - 0.5 * dt_, begin_, begin_ + dt_}; }
   void add_start_kick();
-  void settle(const std::function<void(const PrestressReport&)>& told);
   void relax(StepTimes times, bool from_rest);
-  double residual();
+  void settle(std::int64_t most_steps, const std::function<void(const PrestressReport&)>& told);
+  Dofs open_impulse(bool from_rest);
+  double relaxation_step() const;
+  double relative_frequency(const Dofs& change) const;
+  void set_step(double dt);
   void stop();
   void begin_anew();
   void hold_driven_before();
@@ -128,7 +135,8 @@ class Integrator {
   double dt_, begin_;
   std::optional<PrestressSetup> prestress_;
   std::optional<PrestressReport> prestressed_;
-  double first_residual_ = 0.0;  // of the prestress, as an impulse
+  double first_residual_ = 0.0;  // of the prestress
+  double relaxation_ = 0.0;      // its damping: rate times half its step; 0 in a run
   bool loads_are_steady_;
   bool transmits_steadily_;               // H is the same in all steps
   bool forces_are_steady_;                // loads are, and there are no others
