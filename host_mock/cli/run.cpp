@@ -17,6 +17,7 @@
 #include "results/events.hpp"
 #include "results/fields.hpp"
 #include "results/history.hpp"
+#include "results/state_hash.hpp"
 #include "results/summary.hpp"
 #include "scene/read_meshes.hpp"
 #include "scene/scene.hpp"
@@ -313,10 +314,11 @@ int report(const Scene& scene, const Integrator& integrator, const RunRecord& re
              (options.checkpoint_every > 0 ? ", and --resume goes on from there" : ""));
     return exit_failed;
   }
-  std::printf("%s: %lld steps to time %g in %.2g s, energy balance closed to %.1e%s; results in %s\n",
-              printable(scene.title).c_str(), static_cast<long long>(integrator.steps()), integrator.time(),
-              record.seconds_total, integrator.energy().balance_error,
-              scene.warnings.empty() && record.warnings.empty() ? "" : ", with warnings", folder.c_str());
+  std::printf(
+      "%s: %lld steps to time %g in %.2g s, energy balance closed to %.1e, state %s%s; results in %s\n",
+      printable(scene.title).c_str(), static_cast<long long>(integrator.steps()), integrator.time(),
+      record.seconds_total, integrator.energy().balance_error, state_hash(scene, integrator).c_str(),
+      scene.warnings.empty() && record.warnings.empty() ? "" : ", with warnings", folder.c_str());
   return exit_done;
 }
 

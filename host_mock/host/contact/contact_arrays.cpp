@@ -70,7 +70,7 @@ void ContactArrays::save(std::ostream& out) const {
   std::vector<std::uint8_t> marks;
   std::vector<double> states;
   for (std::size_t k = 0; k < count(); ++k) {
-    if (!(marks_[k] & changed)) continue;
+    if (!may_have_changed(k)) continue;
     nodes.push_back(node_index[k]);
     marks.push_back(marks_[k]);
     const std::vector<double> own = state.of(k);

@@ -108,6 +108,8 @@ class ContactArrays {
 
   // Whether it must be evaluated out of reach, too: it is neither fresh nor at rest.
   bool must_be_evaluated(std::size_t contact) const { return (marks_[contact] & awake) != 0; }
+  // Whether its state may differ from the one it started with.
+  bool may_have_changed(std::size_t contact) const { return (marks_[contact] & changed) != 0; }
   // After a step, of contacts that follow each other, where no status was ILAW_FREE.
   void mark_acting(std::size_t first, std::ptrdiff_t count) {
     std::uint8_t* const marks = &marks_[first];
@@ -151,10 +153,7 @@ class ContactArrays {
   std::vector<double> normal, gap;
 
  private:
-  enum Mark : std::uint8_t {
-    awake = 1,
-    changed = 2
-  };  // changed: the state may not be the first one any more
+  enum Mark : std::uint8_t { awake = 1, changed = 2 };
 
   std::size_t first_component(int contact) const {
     return static_cast<std::size_t>(contact) * static_cast<std::size_t>(dimension_);

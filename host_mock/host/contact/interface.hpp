@@ -82,6 +82,7 @@ class Interface {
   double state(int contact_index, int entry) const {
     return contacts_.state.at(at(contact_index), at(entry));
   }
+  bool may_have_changed(int contact_index) const { return contacts_.may_have_changed(at(contact_index)); }
   // Adds the contact's impulse to those per degree of freedom.
   void add_impulse(int contact_index, Dofs& impulse) const;
   // Relative velocity of a contact in a velocity field, without the obstacle's own.

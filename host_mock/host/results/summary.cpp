@@ -2,6 +2,7 @@
 #include "results/summary.hpp"
 
 #include "base/files.hpp"
+#include "results/state_hash.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -118,6 +119,7 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
       {"stable_step", number_or_inf(tally.stable_step)},
       {"time", integrator.time()},
       {"nodes", scene.model->node_count()},
+      {"state_hash", state_hash(scene, integrator)},
       {"energy", describe_energy(integrator.energy())},
       {"forces", record.forces},
       {"warnings", warnings},

@@ -166,42 +166,6 @@ TEST(CohesiveProperties, LimitsAreTieAndCoulomb) {
   }
 }
 
-// In the host's axes, with a normal that turns by the shortest rotation and no tangent given: what the bond
-// remembers turns with it, and the impulse is that of the local frame, turned.
-TEST(CohesiveProperties, RememberedSlipTurnsWithTheNormal) {
-  const Parameters p{{{"strength", 1.0}, {"toughness", 1.0}, {"stiffness", 50.0}, {"friction", 0.4}}, {}};
-  const double step = 0.05;
-  Bond local(p, step, 1.0, 1.0);
-  const ilaw::interface global =
-      make_law("cohesive", SetupBuilder(p, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL));
-  std::vector<double> state(global.info().state_size);
-  Vector normal{1, 0, 0}, free{}, previous{}, impulse{};
-  ilaw_batch b = local.batch();
-  b.normal = ilaw::input(normal.data(), 0, 1);
-  b.v_previous = ilaw::input(previous.data(), 0, 1);
-  b.v_free = ilaw::input(free.data(), 0, 1);
-  b.state_out = ilaw::output(state.data(), 0, 1);
-  ASSERT_EQ(global.initialise(b), ILAW_OK);
-  b.state_in = ilaw::input(state.data(), 0, 1);
-  b.impulse = ilaw::output(impulse.data(), 0, 1);
-  Draw draw(15);
-  for (int k = 0; k < 200; ++k) {
-    const double c = std::cos(0.1 * k), s = std::sin(0.1 * k);
-    const Vector v = draw.vector(0.5);
-    normal = {c, s, 0.0};
-    free = {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]};
-    const Vector u = local.v_previous;
-    previous = {c * u[0] - s * u[1], s * u[0] + c * u[1], u[2]};
-    ASSERT_EQ(local.step(v), ILAW_OK);
-    ASSERT_EQ(global.evaluate(b), ILAW_OK);
-    // The local tangents turn with the normal about the third axis.
-    ASSERT_NEAR(impulse[0], c * local.r[0] - s * local.r[1], 1e-11) << k;
-    ASSERT_NEAR(impulse[1], s * local.r[0] + c * local.r[1], 1e-11);
-    ASSERT_NEAR(impulse[2], local.r[2], 1e-11);
-  }
-  EXPECT_GT(local.named("damage"), 0.0);
-}
-
 // H = diag(h_N, h_T, h_T) with another h_T: the node moves by v_free + H r and the traction is on the bond's
 // curve.
 TEST(CohesiveProperties, OtherTangentialInertiaIsSolved) {
@@ -295,20 +259,6 @@ TEST(CohesiveProperties, BadParametersAreRefusedByName) {
   EXPECT_NE(bond({{"delay_time", inf_value}}), "");
   EXPECT_NE(bond({{"mixing_exponent", 0.0}}), "");
   EXPECT_NE(bond({}, "trilinear"), "");
-}
-
-// A node that may not be evaluated keeps its state, and the others do not notice.
-TEST(CohesiveProperties, BadNodesKeepTheirState) {
-  Hung node({{{"strength", 2.0}, {"toughness", 3.0}}, {}}, 0.1);
-  for (int k = 0; k < 10; ++k) node.push({3.0, 0, 0});
-  const std::vector<double> state = node.state;
-  ASSERT_GT(state[0], 0.0);
-  EXPECT_EQ(node.step({std::nan(""), 0, 0}), ILAW_BAD_NODES);
-  EXPECT_EQ(node.state, state);
-  node.area = -1.0;
-  EXPECT_EQ(node.step({1.0, 0, 0}), ILAW_BAD_NODES);
-  EXPECT_EQ(node.status, ILAW_BAD_INPUT);
-  EXPECT_EQ(node.state, state);
 }
 
 }  // namespace

@@ -220,26 +220,6 @@ TEST(Rccm, RubsByWhatIsLostOfTheAdhesion) {
   EXPECT_GT(sticks, 300);
 }
 
-// No adhesion: coulomb with predictive activation, bit for bit.
-TEST(Rccm, IsCoulombWithoutAdhesion) {
-  Random random(3);
-  Parameters none = Adhesion{10.0, 10.0, 1.0, 0.1, 0.3}.parameters();
-  none.numbers["initial_intensity"] = 0.0;
-  for (const std::uint32_t form :
-       {std::uint32_t{ILAW_DELASSUS_TRANSVERSE}, std::uint32_t{ILAW_DELASSUS_FULL}}) {
-    NodeRun node("rccm", none, 1e-3, form),
-        coulomb("coulomb", {{{"friction", 0.3}}, {{"activation", "predictive"}}}, 1e-3, form);
-    node.h = form == ILAW_DELASSUS_FULL ? std::array<double, 6>{1.0, 1.4, 0.8, 0.3, -0.2, 0.1}
-                                        : std::array<double, 6>{1.0, 0.6};
-    for (int k = 0; k < 5000; ++k) {
-      node.gap = random.between(-1e-3, 1e-3);
-      node.v_previous = coulomb.v_previous = {};
-      ASSERT_TRUE(step_alike(node, coulomb, random.vector(random.decades(-2.0, 1.0))));
-      ASSERT_EQ(node.energy, coulomb.energy);
-    }
-  }
-}
-
 // A bond that is far stiffer than its step resolves, in one direction: the step has the one solution that a
 // dense search finds.
 TEST(Rccm, SolvesItsEquationWhereTheBondIsStiff) {

@@ -101,51 +101,6 @@ TEST(Rolling, AddsNoEnergyAndTellsWhereItWent) {
   }
 }
 
-// In local axes, in the host's, and in those with a tangent, the results are the same vectors.
-TEST(Rolling, IsTheSameInEveryFrame) {
-  const Parameters parameters = resistance(friction, rolling, twisting, 0.5);
-  Spheres host(parameters, node_count), tangents(parameters, node_count, ILAW_FRAME_GLOBAL, "rolling", true),
-      local(parameters, node_count, ILAW_FRAME_LOCAL);
-  for (Spheres* one : {&host, &tangents, &local}) one->draw(4);
-  const auto turn = [&](std::vector<Vector>& vectors) {
-    for (std::size_t i = 0; i < node_count; ++i) {
-      const Vector &n = local.normal[i], &t = local.tangent[i], a = vectors[i];
-      vectors[i] = {dot(a, n), dot(a, t), dot(a, cross(n, t))};
-    }
-  };
-  for (const auto of :
-       VectorsOfSpheres{&Spheres::v_free, &Spheres::v_previous, &Spheres::spin_free, &Spheres::spin_previous})
-    turn(local.*of);
-  for (Spheres* one : {&host, &tangents, &local}) ASSERT_EQ(one->evaluate(), ILAW_OK) << one->report.reason;
-  for (const auto of : VectorsOfSpheres{&Spheres::r, &Spheres::m, &Spheres::v, &Spheres::w}) {
-    for (std::size_t i = 0; i < node_count; ++i)
-      ASSERT_LE(length((host.*of)[i] - (tangents.*of)[i]), 1e-13) << "node " << i;
-    turn(host.*of);
-    for (std::size_t i = 0; i < node_count; ++i)
-      ASSERT_LE(length((host.*of)[i] - (local.*of)[i]), 1e-13) << "node " << i;
-  }
-}
-
-// Spins and moments are axial: the mirror at z = 0 turns their signs but for that of z.
-TEST(Rolling, IsTheSameInAMirror) {
-  const Parameters parameters = resistance(friction, rolling, twisting, 0.5);
-  Spheres nodes(parameters, node_count), mirrored(parameters, node_count);
-  const auto mirror = [](std::vector<Vector>& vectors, double sign) {
-    for (Vector& a : vectors) a = {sign * a[0], sign * a[1], -sign * a[2]};
-  };
-  for (Spheres* one : {&nodes, &mirrored}) one->draw(5);
-  for (const auto of : VectorsOfSpheres{&Spheres::v_free, &Spheres::v_previous, &Spheres::normal})
-    mirror(mirrored.*of, 1.0);
-  for (const auto of : VectorsOfSpheres{&Spheres::spin_free, &Spheres::spin_previous})
-    mirror(mirrored.*of, -1.0);
-  for (Spheres* one : {&nodes, &mirrored}) ASSERT_EQ(one->evaluate(), ILAW_OK) << one->report.reason;
-  for (const auto of : VectorsOfSpheres{&Spheres::r, &Spheres::v}) mirror(mirrored.*of, 1.0);
-  for (const auto of : VectorsOfSpheres{&Spheres::m, &Spheres::w}) mirror(mirrored.*of, -1.0);
-  for (const auto of : VectorsOfSpheres{&Spheres::r, &Spheres::v, &Spheres::m, &Spheres::w})
-    for (std::size_t i = 0; i < node_count; ++i)
-      ASSERT_LE(length((nodes.*of)[i] - (mirrored.*of)[i]), 1e-13) << "node " << i;
-}
-
 // Obstacle and body in each other's place: n, relative motion and k change their sign, and so do r and m.
 TEST(Rolling, IsTheSameWithRolesSwapped) {
   const Parameters parameters = resistance(friction, rolling, twisting, 0.5);
@@ -159,67 +114,6 @@ TEST(Rolling, IsTheSameWithRolesSwapped) {
   for (const auto of : VectorsOfSpheres{&Spheres::r, &Spheres::v, &Spheres::m, &Spheres::w})
     for (std::size_t i = 0; i < node_count; ++i)
       ASSERT_LE(length((nodes.*of)[i] + (swapped.*of)[i]), 1e-13) << "node " << i;
-}
-
-// Columns, lists of nodes, one node at a time and every instruction set give the bits of rows.
-TEST(Rolling, GivesTheSameBitsInAllLayouts) {
-  constexpr std::size_t count = 171;
-  const Parameters parameters = resistance(friction, rolling, twisting, 0.5);
-  Spheres rows(parameters, count);
-  rows.draw(7);
-  ASSERT_EQ(rows.evaluate(), ILAW_OK) << rows.report.reason;
-  const auto expect_same = [&](const Spheres& other, const char* what) {
-    EXPECT_EQ(other.r, rows.r) << what;
-    EXPECT_EQ(other.m, rows.m) << what;
-    EXPECT_EQ(other.w, rows.w) << what;
-    EXPECT_EQ(other.energy, rows.energy) << what;
-  };
-
-  Spheres columns(parameters, count);
-  columns.draw(7);
-  ilaw_batch b = columns.batch();
-  std::vector<double> free(3 * count), moment(3 * count), inertia(5 * count);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t c = 0; c < 3; ++c) free[c * count + i] = columns.spin_free[i][c];
-    for (std::size_t c = 0; c < 5; ++c) inertia[c * count + i] = columns.h[i][c];
-  }
-  b.spin_free = ilaw::input(free.data(), 1, count);
-  b.delassus = ilaw::input(inertia.data(), 1, count);
-  b.moment = ilaw::output(moment.data(), 1, count);
-  ASSERT_EQ(columns.evaluate(b), ILAW_OK);
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t c = 0; c < 3; ++c) columns.m[i][c] = moment[c * count + i];
-  expect_same(columns, "columns");
-
-  Spheres listed(parameters, count);
-  listed.draw(7);
-  std::vector<std::int32_t> order(count);
-  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::int32_t>(i * 50 % count + 1);
-  b = listed.batch();
-  b.index = order.data();
-  b.index_base = 1;
-  ASSERT_EQ(listed.evaluate(b), ILAW_OK);
-  expect_same(listed, "a list of nodes");
-
-  Spheres single(parameters, count);
-  single.draw(7);
-  for (std::int32_t i = 1; i <= static_cast<std::int32_t>(count); ++i) {
-    b = single.batch();
-    b.index = &i;
-    b.index_base = 1;
-    b.node_count = 1;
-    ASSERT_EQ(single.evaluate(b), ILAW_OK);
-  }
-  expect_same(single, "one node at a time");
-
-  for (const char* level : {"baseline", "v3", "v4"}) {
-    setenv("ILAW_ISA", level, 1);
-    Spheres other(parameters, count);
-    unsetenv("ILAW_ISA");
-    other.draw(7);
-    ASSERT_EQ(other.evaluate(), ILAW_OK);
-    expect_same(other, level);
-  }
 }
 
 TEST(Rolling, IsCoulombWhereNothingResistsSpins) {
