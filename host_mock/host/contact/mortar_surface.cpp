@@ -12,7 +12,7 @@ namespace {
 
 // In shortest edges of the main surface: how far a row slides before its weights are integrated again, and
 // how far beyond the reach facets are listed.
-constexpr double most_slip = 0.02, listed_beyond = 0.3;
+constexpr double most_slip = 0.02, listed_beyond = 0.1;
 constexpr double least_weight = 1e-15;  // smaller ones are rounding
 
 template <class Number>
