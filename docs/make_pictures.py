@@ -54,6 +54,7 @@ CONVERGED = ("postit_test1", "postit_test2", "postit_test3", "bouncing_ball_e08"
 MEASURED = {
     "docs/results/img/calculix.png": "docs/results/calculix.py", "docs/results/img/fault.png": "docs/results/fault.py",
     "docs/results/img/tyre_block.png": "docs/results/tyre_block.py",
+    "docs/img/mortar_pressure.svg": "docs/results/dual_mortar.py",
     "docs/img/oblique_sphere.svg": "docs/results/oblique_sphere.py",
     "docs/img/contact_problems.png": "tests/bench/contact_problems.py",
     "docs/img/dealii_peel.svg": "api/dealii/compare.py",

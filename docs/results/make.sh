@@ -143,7 +143,7 @@ measure_sides() {
   for law in "" "--penalty 1e5" "--penalty 1e6"; do
     echo "sides: ${law:-contact}"
     # shellcheck disable=SC2086  # an option and its value, or none
-    /usr/bin/python3 $here/non_matching.py "$ilaw" --cases impact "at rest" $law --append "$sides" >"$work/sides.txt"
+    /usr/bin/python3 $here/non_matching.py "$ilaw" --cases impact "at rest" --sides fine coarse both $law --append "$sides" >"$work/sides.txt"
   done
   { head --lines=1 "$sides"; tail --lines=+2 "$sides" | sort --stable --field-separator=, --key=1,1r --key=2,2V; } >"$work/sides.csv"
   cp "$work/sides.csv" "$sides"

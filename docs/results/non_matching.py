@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""Pressure and displacement between two bodies whose meshes do not match, from one side and from both: the tables of
-docs/theory/non_matching_meshes.md.
+"""Pressure and displacement between two bodies whose meshes do not match: the tables of
+docs/theory/non_matching_meshes.md and docs/theory/mortar.md.
 
 Usage: ILAW_PATH=build/release/lib/ilaw docs/results/non_matching.py build/release/bin/ilaw
 
 Bodies are blocks, or quarters of rings, one inside the other. By symmetry pressure and displacement are the same at all
 nodes of a face. The table has for both faces least and largest pressure over the mean one, and the largest error of the
-displacement over the mean one. Cost: iterations a step from the fine side and from both, time of the second over that of
-the first, and steps that are not solved.
+displacement over the mean one. Cost: iterations a step, time over that of the first side, and steps that are not solved.
 """
 import argparse
 import csv
@@ -38,6 +37,22 @@ def block(name, corner, elements, velocity, poisson):
             "elements": [elements, elements, layers(elements)], "material": material(poisson)}
 
 
+def write_mesh(file, points, cells, sets):
+    def array(kind, label, values, components=1):
+        text = " ".join(map(str, numpy.ravel(values).tolist()))
+        return (f'<DataArray type="{kind}" Name="{label}" NumberOfComponents="{components}" format="ascii">'
+                f"{text}</DataArray>")
+    file.write_text(
+        '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian"><UnstructuredGrid>'
+        f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">'
+        f'<Points>{array("Float64", "Points", points, 3)}</Points>'
+        f'<Cells>{array("Int64", "connectivity", cells)}'
+        f'{array("Int64", "offsets", numpy.arange(8, 8 * len(cells) + 1, 8))}'
+        f'{array("UInt8", "types", numpy.full(len(cells), 12))}</Cells>'
+        f'<PointData>{"".join(array("Int32", key, flags.astype(int)) for key, flags in sets.items())}</PointData>'
+        "</Piece></UnstructuredGrid></VTKFile>\n")
+
+
 def ring(name, folder, radii, elements):
     """Quarter of a ring about z, in a file with the sets inside and outside."""
     n, m = elements, layers(elements)
@@ -51,20 +66,8 @@ def ring(name, folder, radii, elements):
     cells = numpy.stack(low + high, -1).reshape(-1, 8)
     sets = {"inside": numpy.isin(node, node[0]), "outside": numpy.isin(node, node[m])}
 
-    def array(kind, label, values, components=1):
-        text = " ".join(map(str, numpy.ravel(values).tolist()))
-        return (f'<DataArray type="{kind}" Name="{label}" NumberOfComponents="{components}" format="ascii">'
-                f"{text}</DataArray>")
     file = Path(folder) / f"{name}.vtu"
-    file.write_text(
-        '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian"><UnstructuredGrid>'
-        f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">'
-        f'<Points>{array("Float64", "Points", points, 3)}</Points>'
-        f'<Cells>{array("Int64", "connectivity", cells)}'
-        f'{array("Int64", "offsets", numpy.arange(8, 8 * len(cells) + 1, 8))}'
-        f'{array("UInt8", "types", numpy.full(len(cells), 12))}</Cells>'
-        f'<PointData>{"".join(array("Int32", key, flags.astype(int)) for key, flags in sets.items())}</PointData>'
-        "</Piece></UnstructuredGrid></VTKFile>\n")
+    write_mesh(file, points, cells, sets)
     return {"name": name, "file": str(file), "material": material(0.3)}
 
 
@@ -182,7 +185,7 @@ def main():
         for mesh in arguments.meshes:
             coarse, fine = map(int, mesh.split(":"))
             pressures, errors, sweeps, seconds, unsolved = [], [], {}, {}, {}
-            for side in SIDES:
+            for side in arguments.sides:
                 summary, rows = run(arguments.ilaw, case, coarse, fine, side, arguments.keep_gaps, arguments.penalty)
                 p, u = fields(case, rows, coarse, fine)
                 off = abs(p - 1).max()
@@ -193,17 +196,19 @@ def main():
                 unsolved[side] = summary["coupling"]["steps_unconverged"]
             name = f"{case} | {coarse} on {fine}"
             pressure_rows.append(f"| {name} | {' | '.join(pressures)} |")
-            error_rows.append(f"| {name} | {' | '.join(errors)} | {sweeps['fine']:.0f}, {sweeps['both']:.0f} | "
-                              f"{seconds['both'] / seconds['fine']:.1f} | {unsolved['both']} of {summary['steps']} |")
+            error_rows.append(f"| {name} | {' | '.join(errors)} | "
+                              f"{', '.join(f'{sweeps[side]:.0f}' for side in arguments.sides)} | "
+                              f"{', '.join(f'{seconds[side] / seconds[arguments.sides[0]]:.1f}' for side in arguments.sides[1:])} | "
+                              f"{', '.join(str(unsolved[side]) for side in arguments.sides)} of {summary['steps']} |")
             print(pressure_rows[-1], error_rows[-1], flush=True)
             if arguments.append:
                 with arguments.append.open("a") as table:
                     print(case, f"{coarse} on {fine}", law, *(p.replace("1, to", "exact to") for p in pressures),
-                          " / ".join(errors), f"{sweeps['fine']:.0f} / {sweeps['both']:.0f}", sep=",", file=table)
-    print("\n| case | elements | nodes of the fine side | of the coarse side | both sides |")
-    print("| --- | --- | --- | --- | --- |", *pressure_rows, sep="\n")
-    print("\n| case | elements | fine side | coarse side | both sides | iterations | time | unsolved |")
-    print("| --- | --- | --- | --- | --- | --- | --- | --- |", *error_rows, sep="\n")
+                          " / ".join(errors), " / ".join(f"{sweeps[side]:.0f}" for side in arguments.sides),
+                          sep=",", file=table)
+    names = " | ".join(arguments.sides)
+    print(f"\n| case | elements | {names} |", *pressure_rows, sep="\n")
+    print(f"\n| case | elements | {names} | iterations | time over the first | unsolved |", *error_rows, sep="\n")
 
 
 if __name__ == "__main__":

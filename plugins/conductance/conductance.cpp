@@ -48,9 +48,11 @@ struct conductance {
       restitution_parameter(&conductance::restitution),
       activation_parameter(&conductance::activation)};
 
-  static constexpr amount_card amounts[] = {{.name = "conducted_heat",
-                                             .unit = "J",
-                                             .doc = "Flows from the counterpart into the body in the step."}};
+  static constexpr amount_card amounts[] = {
+      {.name = "conducted_heat", .unit = "J", .doc = "Flows from the counterpart into the body in the step."},
+      {.name = "heat_per_kelvin",
+       .unit = "J/K",
+       .doc = "The same over the difference of temperature, if both stay as they are."}};
 
   std::uint32_t inputs() const {
     return inputs_of_contact(constant > 0.0 ? card.inputs : card.inputs & ~reads_area, restitution,
@@ -63,17 +65,24 @@ struct conductance {
         contact_problem_of(contact_at(node, restitution, activation), node.v_free, node.v_previous);
     node.impulse.n = pressing_impulse(node.delassus, contact);
     const mask_of<V> touches = node.impulse.n > 0.0;
-    if (node.wants_energy) node.amounts[0] = zero_unless(touches, conducted(node));
+    if (node.wants_energy) {
+      const V flow = zero_unless(touches, heat_per_kelvin(node));
+      node.amounts[0] = conducted(flow);
+      node.amounts[1] = flow;
+    }
     return select(touches, status::closed, status::free);
   }
 
  private:
-  // (T_c - T) (1 - e^-x)/c with x = c G h and c = 1/C + 1/C_c, the exchange of two capacities over the step,
-  // where G h = h_0 A h + h_p r_N; (T_c - T) G h where both are infinite.
+  // G h = h_0 A h + h_p r_N.
   template <class Node>
-  V conducted(const Node& node) const {
+  V heat_per_kelvin(const Node& node) const {
     const V by_area = zero_unless(constant > 0.0, constant * node.area * node.velocity_step);
-    const V flow = by_area + per_pressure * node.impulse.n;
+    return by_area + per_pressure * node.impulse.n;
+  }
+  // (T_c - T) (1 - e^-x)/c with x = c G h and c = 1/C + 1/C_c, the exchange of two capacities over the step;
+  // (T_c - T) G h where both are infinite.
+  V conducted(V flow) const {
     const V c = 1.0 / heat_capacity + 1.0 / counterpart_heat_capacity;
     const V exchanged = -exp_minus_one(-(flow * c)) / select(c > 0.0, c, 1.0);
     return (counterpart_temperature - temperature) * select(c > 0.0, exchanged, flow);

@@ -2,10 +2,10 @@
 // against closed forms at steps that share no factor and at the stable step of conduction.
 #include "mesh_writer.hpp"
 #include "run_result.hpp"
+#include "thermal_scenes.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -15,49 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array step_fractions{1.0, 0.71, 0.43, 0.19};  // of the stable step
-
-// Units in which a bar conducts a few times slower than it vibrates.
-struct Bar {
-  double length = 1.0, density = 1.0, specific_heat = 1.0, conductivity = 1.0, temperature = 300.0;
-  int elements = 5;
-
-  double size() const { return length / elements; }
-  double diffusivity() const { return conductivity / (density * specific_heat); }
-  double effusivity() const { return std::sqrt(conductivity * density * specific_heat); }
-  // Gershgorin's bound for cubes: C/K_ii = 3/8 of the size squared over the diffusivity.
-  double stable_step() const { return 0.375 * size() * size() / diffusivity(); }
-};
-
-// A column of cubes along z from its bottom on.
-json column(const Bar& bar, const std::string& name, double bottom) {
-  return {{"name", name},
-          {"corner", {0, 0, bottom}},
-          {"size", {bar.size(), bar.size(), bar.length}},
-          {"elements", {1, 1, bar.elements}},
-          {"material", {{"type", "linear"}, {"young", 1.0}, {"poisson", 0.0}, {"density", bar.density}}},
-          {"thermal",
-           {{"specific_heat", bar.specific_heat},
-            {"conductivity", bar.conductivity},
-            {"initial_temperature", bar.temperature}}}};
-}
-
-json scene_with(json blocks, double dt, double end) {
-  return {{"model", {{"type", "blocks"}, {"blocks", std::move(blocks)}}},
-          {"time", {{"dt", dt}, {"end", end}}},
-          {"interfaces", json::array()}};
-}
-
-json held(const std::string& nodes, double temperature) {
-  return {{"type", "temperature"}, {"nodes", nodes}, {"history", {{0, temperature}}}};
-}
-
-// Temperatures are at half steps.
-double thermal_time(const Integrator& integrator, double dt) { return integrator.time() + 0.5 * dt; }
-
-void run(Integrator& integrator, std::int64_t steps) {
-  for (std::int64_t n = 0; n < steps; ++n) integrator.step();
-}
+using nlohmann::json;
 
 // ---- conduction -----------------------------------------------------------------------------------------
 
@@ -227,18 +185,6 @@ TEST(Thermal, SharesANodeBetweenContacts) {
     }
 }
 
-// Two columns on each other, pressed together by 1e-3 and shortened by as much: in equilibrium.
-json two_columns(const Bar& below, const Bar& above, double dt, double end, const json& interface) {
-  json scene = scene_with({column(below, "below", 0), column(above, "above", below.length)}, dt, end);
-  scene["initial"] = {{{"gradient", {{0, 0, 0}, {0, 0, 0}, {0, 0, -1e-3}}}}};
-  scene["loads"] = {{{"type", "motion"}, {"nodes", "below.z_min"}},
-                    {{"type", "pressure"}, {"surface", "above.z_max"}, {"history", {{0, 1e-3}}}}};
-  scene["interfaces"] = {interface};
-  scene["interfaces"][0]["nodes"] = "above.z_min";
-  scene["interfaces"][0]["against"] = {{"surface", "below.z_max"}};
-  return scene;
-}
-
 // Carslaw, Jaeger 1959, section 2.14: the surfaces of two half spaces that touch are at the mean of their
 // temperatures, weighed by their effusivities. On meshes of size d the error falls as exp(-4 a t/d^2): a
 // lumped half space takes heat by e sqrt(s) sqrt(1 + s d^2/(4a)), so the ratio of two of them is analytic
@@ -249,7 +195,7 @@ TEST(Thermal, HoldsTheTemperatureOfTwoHalfSpaces) {
     const Bar below{.specific_heat = 2.0, .conductivity = 1.2, .temperature = 400, .elements = elements};
     const Bar above{.specific_heat = 1.0, .conductivity = 0.5, .temperature = 300, .elements = elements};
     const double dt = std::min(below.stable_step(), above.stable_step());
-    const json law = {{"law", "conductance"}, {"parameters", {{"conductance", 1e9}}}};
+    const json law = {{"law", "conductance"}, {"parameters", {{"conductance", 1e12}}}};
     Scene read = scene_of(two_columns(below, above, dt, 0.05, law).dump());
     Integrator integrator = integrator_of(read);
     run(integrator, read.steps);

@@ -11,7 +11,7 @@ namespace ilaw::host {
 ContactHeat::ContactHeat(const ilaw_instance_info& info, bool gives_amounts,
                          std::optional<Table> obstacle_temperature)
     : obstacle_(std::move(obstacle_temperature)) {
-  constexpr std::array<std::string_view, 3> amount_names{"heat", "counterpart_heat", "conducted_heat"};
+  constexpr std::array<std::string_view, 3> amount_names{"heat", "counterpart_heat", "heat_per_kelvin"};
   inputs_.fill(-1);
   amounts_.fill(-1);
   for (std::uint32_t p = 0; p < info.per_node_parameter_count; ++p)
@@ -20,6 +20,8 @@ ContactHeat::ContactHeat(const ilaw_instance_info& info, bool gives_amounts,
   for (std::uint32_t a = 0; gives_amounts && a < info.amount_count; ++a)
     for (std::size_t k = 0; k < amounts_.size(); ++k)
       if (std::string_view(info.amounts[a]->name) == amount_names[k]) amounts_[k] = static_cast<int>(a);
+  for (std::uint32_t a = 0; a < info.amount_count; ++a)
+    if (std::string_view(info.amounts[a]->name) == "conducted_heat") conducted_heat_ = static_cast<int>(a);
 }
 
 void ContactHeat::open(double time, std::size_t contact_count, const std::vector<std::int32_t>& active) {
@@ -28,23 +30,23 @@ void ContactHeat::open(double time, std::size_t contact_count, const std::vector
   if (obstacle_) obstacle_temperature_ = obstacle_->at(time)[0];
 }
 
-// Against a facet: the temperature where the node meets it, and the capacity that heat meets there if it is
-// divided as the impulse is, 1/C = sum of w_i W_i/C_i. A node in several contacts is a set of parallel parts:
-// one has w_i/W_i of its capacity, where W_i is the sum of its weights. Alone, W_i = w_i.
+// A side is at the mean of its nodes, and has the capacity that heat meets there if it is divided as the
+// impulse is: 1/C = sum of w_i^2/C_i.
 void ContactHeat::give(std::size_t contact, int node, const ContactPoint& point,
                        ContactArrays& contacts) const {
-  double temperature = obstacle_temperature_, capacity = std::numeric_limits<double>::infinity();
-  if (!point.partners.empty()) {
-    temperature = capacity = 0.0;
-    for (const auto& [partner, weight] : point.partners) {
-      temperature += weight * temperature_[partner];
-      const double sum = sums_of_weights_ ? sums_of_weights_[partner] : std::fabs(weight);
-      capacity += std::fabs(weight) * sum / capacity_[partner];
-    }
-    capacity = 1.0 / capacity;
-  }
-  const double own = sums_of_weights_ ? capacity_[node] / sums_of_weights_[node] : capacity_[node];
-  const std::array values{temperature_[node], temperature, own, capacity};
+  struct Side {
+    double temperature = 0.0, softness = 0.0;
+  };
+  Side own, other;
+  const auto add_to = [&](Side& side) {
+    return [&](int index, double weight) {
+      side.temperature += weight * temperature_[index];
+      side.softness += weight * weight / capacity_[index];
+    };
+  };
+  point.for_each_side(node, add_to(own), add_to(other));
+  if (point.partners.empty()) other.temperature = obstacle_temperature_;
+  const std::array values{own.temperature, other.temperature, 1.0 / own.softness, 1.0 / other.softness};
   for (std::size_t k = 0; k < values.size(); ++k)
     if (inputs_[k] >= 0) contacts.parameters[static_cast<std::size_t>(inputs_[k])][contact] = values[k];
 }

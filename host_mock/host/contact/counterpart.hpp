@@ -59,13 +59,25 @@ struct ContactPoint {
   Partners partners;
   bool is_beyond_border = false;  // beside the surface of a mesh
   double own_weight = 1.0;
-  double area = 0.0;  // that the contact stands for; 0: the tributary area of its node
+  std::size_t own_partners = 0;  // the first ones, of the node's own body
+  double area = 0.0;             // that the contact stands for; 0: the tributary area of its node
 
   // Calls visit(node, weight) for the contact's own node and its partners.
   template <class Visit>
   void for_each_node(int node, Visit visit) const {
     visit(node, own_weight);
     for (const Partner& partner : partners) visit(partner.node, -partner.weight);
+  }
+  // The same of the nodes of each side; the weights of a side have the sum 1.
+  template <class OwnSide, class OtherSide>
+  void for_each_side(int node, OwnSide own, OtherSide other) const {
+    own(node, own_weight);
+    std::size_t k = 0;
+    for (const Partner& partner : partners)
+      if (k++ < own_partners)
+        own(partner.node, -partner.weight);
+      else
+        other(partner.node, partner.weight);
   }
   // H along an axis: inverse_mass is 1/m, or less where loads take a part of an impulse, per degree of
   // freedom.

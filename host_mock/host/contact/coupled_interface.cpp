@@ -62,18 +62,8 @@ bool CoupledInterface::is_idle(std::int32_t contact) const {
          interface_.gap(contact) > interface_.search_.closing();
 }
 
-void CoupledInterface::add_conducting(std::vector<double>& weights) const {
-  if (!interface_.heat_ || !interface_.heat_->conducts()) return;
-  for (std::size_t i = 0; i < group_.count(); ++i)
-    interface_.point(group_.contact(i))
-        .for_each_node(interface_.node_of(group_.contact(i)), [&](int node, double weight) {
-          weights[static_cast<std::size_t>(node)] += std::fabs(weight);
-        });
-}
-
-void CoupledInterface::give_temperatures(const std::vector<double>& weights) {
+void CoupledInterface::give_temperatures() {
   if (!interface_.heat_) return;
-  if (interface_.heat_->conducts()) interface_.heat_->share(weights.data());
   for (std::size_t i = 0; i < group_.count(); ++i) {
     const std::int32_t contact = group_.contact(i);
     interface_.heat_->give(static_cast<std::size_t>(contact), interface_.node_of(contact),

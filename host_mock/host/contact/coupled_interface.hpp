@@ -23,10 +23,8 @@ class CoupledInterface {
   // Chooses the active contacts, finds their gaps, normals and partners, and gives the solver those that may
   // act: the others are out of reach of the speeds of the step.
   const ilaw_contacts& open(const StepView& step);
-  // Adds the weights of the contacts that conduct to those of their nodes. Once all interfaces have, laws get
-  // the temperatures.
-  void add_conducting(std::vector<double>& weights) const;
-  void give_temperatures(const std::vector<double>& weights);
+  // Laws get the temperatures.
+  void give_temperatures();
   // Takes the impulses that were found.
   void take();
   // Throws as Interface::solve(), given the first contact with bad input (place in the group; -1: none).

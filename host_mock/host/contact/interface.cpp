@@ -145,8 +145,15 @@ void Interface::solve(const StepView& step, Dofs& v) {
   total_amounts();
 }
 
+// The law gives the conducted heat of contacts that share no node and that nothing else heats.
 void Interface::total_amounts() {
-  for (std::size_t k = 0; k < sums_.amounts.size(); ++k) amounts_[k] += sums_.amounts[k];
+  for (std::size_t k = 0; k < sums_.amounts.size(); ++k)
+    if (!heat_ || !heat_->is_conducted_heat(k)) amounts_[k] += sums_.amounts[k];
+}
+
+void Interface::add_conducted_heat(double heat) {
+  for (std::size_t k = 0; k < amounts_.size(); ++k)
+    if (heat_->is_conducted_heat(k)) amounts_[k] += heat;
 }
 
 // ---- the last step --------------------------------------------------------------------------------------

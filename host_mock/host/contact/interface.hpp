@@ -41,6 +41,8 @@ class Interface {
 
   // Forgets the amounts that laws gave so far.
   void clear_amounts() { amounts_.assign(amounts_.size(), 0.0); }
+  // Of a step, by all of its contacts.
+  void add_conducted_heat(double heat);
 
   // Whether laws are asked for what contacts dissipate and store, which takes them as long again as
   // the impulse, and changes no bit of it. They are, where nobody says that it is not wanted.

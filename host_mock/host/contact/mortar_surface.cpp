@@ -12,7 +12,7 @@ namespace {
 
 // In shortest edges of the main surface: how far a row slides before its weights are integrated again, and
 // how far beyond the reach facets are listed.
-constexpr double most_slip = 0.02, listed_beyond = 0.3;
+constexpr double most_slip = 0.02, listed_beyond = 0.1;
 constexpr double least_weight = 1e-15;  // smaller ones are rounding
 
 template <class Number>
@@ -245,6 +245,7 @@ void MortarSurface::assemble(std::size_t node_index) {
     else if (std::fabs(weight) > least_weight)
       row.partners.push_back({other, -weight});
   }
+  row.own_partners = row.partners.size();
   for (const auto& [other, weight] : main)
     if (std::fabs(weight) > least_weight * row.area) row.partners.push_back({other, weight / row.area});
   rows_[node_index] = std::move(row);
@@ -273,6 +274,7 @@ ContactPoint MortarSurface::contact_point(int node_index, const Dofs& u, double 
   found.normal = row.normal;
   found.own_weight = row.own_weight;
   found.area = row.area;
+  found.own_partners = row.own_partners;
   for (const Partner& partner : row.partners) found.partners.add(partner);
   return found;
 }

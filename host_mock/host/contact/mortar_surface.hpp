@@ -46,6 +46,7 @@ class MortarSurface : public MeshSurface {
   struct Row {
     double area = 0.0, own_weight = 1.0;
     std::vector<Partner> partners;                         // their sum is own_weight
+    std::size_t own_partners = 0;                          // the first ones, of the secondary surface
     std::vector<std::pair<std::int32_t, double>> normals;  // facets of the main surface, integrals of psi
     Eigen::Vector3d start =
         Eigen::Vector3d::Zero();  // between the places of both sides, when the weights were made

@@ -34,11 +34,10 @@ constexpr std::array<QuadraturePoint, 6> quadrature{{{a_1, a_1, w_1},
 // Calls visit(point, weight) for the quadrature points of a convex polygon.
 template <class Visit>
 void for_each_point(const Polygon& polygon, Visit visit) {
-  const Eigen::Vector2d center = polygon.center();
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Eigen::Vector2d u = polygon[k] - center, v = polygon.next(k) - center;
+  for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
+    const Eigen::Vector2d u = polygon[k] - polygon[0], v = polygon[k + 1] - polygon[0];
     const double area = 0.5 * (u[0] * v[1] - u[1] * v[0]);
-    for (const QuadraturePoint& q : quadrature) visit(center + q.a * u + q.b * v, area * q.weight);
+    for (const QuadraturePoint& q : quadrature) visit(polygon[0] + q.a * u + q.b * v, area * q.weight);
   }
 }
 
@@ -89,6 +88,7 @@ double FacetIntegral::dual_share() const {
   double share = 1.0;
   const auto n = static_cast<Eigen::Index>(count_);
   const double covered = standard_.area.sum() / (size_ * size_);
+  if (covered > 1.0 - corner_rounding) return 1.0;
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!(standard_.area[i] > least_part * size_ * size_)) continue;
     Eigen::Vector2d centroid = Eigen::Vector2d::Zero();

@@ -31,12 +31,6 @@ double Polygon::area() const {
   return 0.5 * twice;
 }
 
-Eigen::Vector2d Polygon::center() const {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (std::size_t k = 0; k < size_; ++k) sum += corners_[k];
-  return sum / static_cast<double>(size_);
-}
-
 Polygon Polygon::reversed() const {
   Polygon other;
   for (std::size_t k = size_; k-- > 0;) other.add(corners_[k]);
@@ -67,15 +61,17 @@ double last_inside(const Polygon& polygon, const Eigen::Vector2d& from, const Ei
 }
 
 FlatFacet::FlatFacet(const Polygon& corners) : is_triangle_(corners.size() == 3), origin_(corners[0]) {
+  constexpr double rounding = 1e-15;
   const Eigen::Vector2d& last = corners[corners.size() - 1];
   along_ = {corners[1] - origin_, last - origin_};
   twist_ = is_triangle_ ? Eigen::Vector2d::Zero().eval() : corners[2] - corners[1] - along_[1];
+  is_parallelogram_ = twist_.squaredNorm() <= rounding * rounding * along_[0].squaredNorm();
 }
 
-// Newton's method; in a parallelogram its first step is exact.
+// Newton's method, whose error is squared by a step; in a parallelogram its first step is exact.
 Eigen::Vector2d FlatFacet::inverse(const Eigen::Vector2d& point) const {
   constexpr int most_steps = 20;
-  constexpr double enough = 1e-15;
+  constexpr double enough = 1e-8;
   Eigen::Vector2d at(0.5, 0.5);
   for (int step = 0; step < most_steps; ++step) {
     const Eigen::Vector2d along_s = along_[0] + at[1] * twist_, along_t = along_[1] + at[0] * twist_;
@@ -85,7 +81,7 @@ Eigen::Vector2d FlatFacet::inverse(const Eigen::Vector2d& point) const {
     const Eigen::Vector2d change(cross(missing, along_t) / determinant,
                                  cross(along_s, missing) / determinant);
     at += change;
-    if (change.cwiseAbs().maxCoeff() < enough) break;
+    if (is_parallelogram_ || change.cwiseAbs().maxCoeff() < enough) break;
   }
   return at;
 }

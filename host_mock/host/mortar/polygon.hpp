@@ -23,7 +23,6 @@ class Polygon {
   }
   // Positive if the corners follow each other counterclockwise.
   double area() const;
-  Eigen::Vector2d center() const;  // the mean of the corners
   Polygon reversed() const;
 
  private:
@@ -50,7 +49,7 @@ class FlatFacet {
  private:
   Eigen::Vector2d inverse(const Eigen::Vector2d& point) const;
 
-  bool is_triangle_;
+  bool is_triangle_, is_parallelogram_;
   // x = origin + along_[0] s + along_[1] t + twist s t
   Eigen::Vector2d origin_, twist_;
   std::array<Eigen::Vector2d, 2> along_;

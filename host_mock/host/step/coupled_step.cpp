@@ -63,15 +63,8 @@ const ilaw_coupled_report& CoupledStep::solve(StepView step, const double* inver
 void CoupledStep::open(const StepView& step) {
   given_.clear();
   for (CoupledInterface& interface : interfaces_) given_.push_back(&interface.open(step));
-  give_temperatures();
+  for (CoupledInterface& interface : interfaces_) interface.give_temperatures();
   number_bodies();
-}
-
-void CoupledStep::give_temperatures() {
-  if (!model_.thermal()) return;
-  conducting_.assign(static_cast<std::size_t>(model_.node_count()), 0.0);
-  for (const CoupledInterface& interface : interfaces_) interface.add_conducting(conducting_);
-  for (CoupledInterface& interface : interfaces_) interface.give_temperatures(conducting_);
 }
 
 void CoupledStep::number_bodies() {

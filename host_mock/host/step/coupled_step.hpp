@@ -47,7 +47,6 @@ class CoupledStep {
 
  private:
   void open(const StepView& step);
-  void give_temperatures();
   void number_bodies();
   bool forget_forces();
   double rounding_of_gaps(const StepView& step) const;
@@ -63,7 +62,6 @@ class CoupledStep {
   std::vector<std::int32_t> body_;   // of each node of the model; -1: no contact has it
   std::vector<double> inverse_mass_, velocity_, previous_;  // of the bodies
   Dofs v_free_;                                             // of the step, for one more solve
-  std::vector<double> conducting_;  // of each node of the model: sum of its weights in contacts that conduct
   ilaw::coupled solver_;
   ilaw_coupled_report report_{};
 };

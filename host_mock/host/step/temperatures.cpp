@@ -16,6 +16,7 @@ Temperatures::Temperatures(const ThermalModel& model, const Loads& loads, const 
       free_rise_(rise_),
       temperature_(rise_),
       capacity_(model.capacity()),
+      softness_(rise_),
       heat_(rise_) {
   for (const auto& load : loads) {
     const HeatLoad* const heat = load->heat();
@@ -26,6 +27,8 @@ Temperatures::Temperatures(const ThermalModel& model, const Loads& loads, const 
       capacity_[node] = std::numeric_limits<double>::infinity();
     }
   }
+  for (int node = 0; node < static_cast<int>(rise_.size()); ++node)
+    if (model_.has_temperature(node)) softness_[node] = 1.0 / capacity_[node];
   publish();
   for (const auto& interface : interfaces)
     if (ContactHeat* const heat = interface->heat()) heat->read(temperature_.data(), capacity_.data());
@@ -62,20 +65,55 @@ void Temperatures::conduct(StepTimes step) {
   publish();
 }
 
-void Temperatures::add_flow(const Interface& interface, std::int32_t contact) {
+void Temperatures::add_friction(const Interface& interface, std::int32_t contact) {
   const ContactHeat::Flow& flow = interface.heat()->flow(static_cast<std::size_t>(contact));
   sums_.friction += static_cast<Sum>(flow.body) + flow.counterpart;
-  heat_[interface.node_of(contact)] += flow.body;
   const ContactPoint& point = interface.point(contact);
   if (point.partners.empty()) sums_.obstacles += flow.counterpart;
-  for (const auto& [partner, weight] : point.partners) heat_[partner] += weight * flow.counterpart;
+  point.for_each_side(
+      interface.node_of(contact), [&](int node, double weight) { heat_[node] += weight * flow.body; },
+      [&](int node, double weight) { heat_[node] += weight * flow.counterpart; });
+}
+
+// Calls visit(interface, contact, conductance) for the contacts that conduct in this step.
+template <class Visit>
+void Temperatures::for_each_conducting(const Interfaces& interfaces, Visit visit) const {
+  for (const auto& interface : interfaces) {
+    if (!interface->heat()) continue;
+    for (const std::int32_t contact : interface->active())
+      if (const double conductance = interface->heat()->flow(static_cast<std::size_t>(contact)).per_kelvin;
+          conductance > 0.0)
+        visit(*interface, contact, conductance);
+  }
+}
+
+// From the temperatures before the step on, while conduction, loads and friction heat the nodes evenly.
+void Temperatures::exchange(const Interfaces& interfaces) {
+  exchange_.clear();
+  for_each_conducting(interfaces, [&](Interface& interface, std::int32_t contact, double conductance) {
+    const ContactPoint& point = interface.point(contact);
+    exchange_.add(conductance, point.partners.empty() ? interface.heat()->obstacle_temperature() : 0.0,
+                  interface.node_of(contact), point);
+  });
+  if (exchange_.count() == 0) return;
+  const Dofs before = model_.initial_temperature() + rise_;
+  const Dofs change = free_rise_ - rise_ + heat_.cwiseProduct(softness_);
+  const Dofs& conducted = exchange_.solve({before, change, softness_});
+  exchange_.add_heat(heat_);
+  Eigen::Index place = 0;
+  for_each_conducting(interfaces, [&](Interface& interface, std::int32_t contact, double) {
+    const double heat = conducted[place++];
+    interface.add_conducted_heat(heat);
+    if (interface.point(contact).partners.empty()) sums_.obstacles -= heat;
+  });
 }
 
 bool Temperatures::take(const Interfaces& interfaces) {
   heat_.setZero();
   for (const auto& interface : interfaces)
     if (interface->heat())
-      for (const std::int32_t contact : interface->active()) add_flow(*interface, contact);
+      for (const std::int32_t contact : interface->active()) add_friction(*interface, contact);
+  exchange(interfaces);
   for (Eigen::Index node = 0; node < heat_.size(); ++node)
     if (heat_[node] != 0.0) free_rise_[node] += heat_[node] / model_.capacity()[node];
   hold(held_at_);

@@ -1,15 +1,14 @@
 // temperatures.hpp - the temperatures of nodes, at half steps as velocities are:
-//   T_free = T_{n+1/2} + C^-1 h (q(t_{n+1}) - K T_{n+1/2}),  T_{n+3/2} = T_free + C^-1 Q(T_free),
-// Q the heat that laws give in the step. The start has half a step. Laws see T_free as they see v_free: an
-// exchange that passes no equilibrium is then stable at any step at which conduction is. Source: explicit
-// conduction with lumped capacities (Bathe 2014, section 9.6), then contact (Godunov's splitting), first
-// order.
+//   T_free = T_{n+1/2} + C^-1 h (q(t_{n+1}) - K T_{n+1/2}),  T_{n+3/2} = T_free + C^-1 Q,
+// Q the heat of the laws and of the exchange in the step. The start has half a step. Laws see T_free as they
+// see v_free. Source: explicit conduction with lumped capacities (Bathe 2014, section 9.6).
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "contact/interface.hpp"
 #include "model/load.hpp"
 #include "model/thermal_model.hpp"
+#include "step/heat_exchange.hpp"
 
 #include <iosfwd>
 #include <vector>
@@ -55,7 +54,10 @@ class Temperatures {
   };
   // Adds what holding takes to the heat that was supplied.
   void hold(double time);
-  void add_flow(const Interface& interface, std::int32_t contact);
+  void add_friction(const Interface& interface, std::int32_t contact);
+  template <class Visit>
+  void for_each_conducting(const Interfaces& interfaces, Visit visit) const;
+  void exchange(const Interfaces& interfaces);
   Sum stored() const;
   void publish();
 
@@ -65,9 +67,11 @@ class Temperatures {
   // T - T_0, so that small rises close their balance, too.
   Dofs rise_, free_rise_;
   Dofs temperature_, capacity_;  // T_free, and capacities as laws see them: infinite where T is held
-  Dofs heat_;                    // scratch
-  Sums sums_, sums_before_;      // sums_before_: of the last complete step
-  double held_at_ = 0.0;         // the time at which temperatures are held: the end of the step
+  Dofs softness_;                // 1/capacity_, 0 without a temperature
+  HeatExchange exchange_;
+  Dofs heat_;                // scratch
+  Sums sums_, sums_before_;  // sums_before_: of the last complete step
+  double held_at_ = 0.0;     // the time at which temperatures are held: the end of the step
 };
 
 }  // namespace ilaw::host

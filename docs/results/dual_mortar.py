@@ -1,0 +1,356 @@
+#!/usr/bin/env python3
+"""Dual weights against closed forms, beside one and both sides: figures of docs/theory/mortar.md.
+
+Usage: ILAW_PATH=build/release/lib/ilaw docs/results/dual_mortar.py build/release/bin/ilaw [--cases ...] [--sides ...]
+
+hertz     A parabolic face is pressed on a flat one, in plane strain, then sheared: rms of the errors of p(x) (Hertz 1882)
+          and q(x) (Cattaneo 1938, Mindlin 1949) over the largest pressure and traction. Half the width of contact has 12
+          elements in the lower body and 20 in the upper one.
+sliding   A block slides 1e5 steps over another without friction: change of its energy of motion, path, updates.
+bowl      An arc swings in a bowl without friction: against a rigid pendulum.
+bonds     Blocks that are glued by a law, in tension and in shear: the largest error of the traction.
+corners   A cube falls on an edge or a corner on a plate: how far it sinks in.
+impact    Two blocks meet with restitution 0, .5 and 1: the error of the pressure, and the balance of energy.
+"""
+# SPDX-License-Identifier: BSD-3-Clause
+import argparse
+import csv
+import json
+import math
+import subprocess
+import tempfile
+from pathlib import Path
+
+import non_matching
+import numpy
+from non_matching import block, interface, layers, material, write_mesh
+
+YOUNG, POISSON, RADIUS, FRICTION = 1e6, 0.3, 100.0, 0.3
+MODULUS = YOUNG / (2 * (1 - POISSON**2))  # E* of two equal bodies
+LENGTH, DEPTH, WIDTH = 10.0, 10.0, 1 / 12  # of a body: half its length, its depth; contact is a half width of 1
+HERTZ_ELEMENTS = 12, 20  # in a half width of contact, below and above
+FACES = {"a": "top", "b": "bottom"}
+
+
+def run(program, scene, *options):
+    with tempfile.TemporaryDirectory() as folder:
+        scene = scene(Path(folder)) if callable(scene) else scene
+        file = Path(folder) / "scene.json"
+        file.write_text(json.dumps(scene))
+        subprocess.run([program, "run", file, "--out", folder, "--threads", "1", *options], check=True, capture_output=True)
+        summary = json.loads((Path(folder) / "summary.json").read_text())
+        with (Path(folder) / "history.csv").open() as rows:
+            return summary, list(csv.DictReader(rows))
+
+
+def brick(file, x, depth, height, sets):
+    """Elements in x and z, one in y; height: of the points, by x and the depth below the face."""
+    points = numpy.array([[px, py, height(px, pz)] for pz in depth for py in (0.0, WIDTH) for px in x])
+    node = numpy.arange(len(points)).reshape(len(depth), 2, len(x))
+    low = [node[:-1, j, i:len(x) - 1 + i] for j, i in ((0, 0), (0, 1), (1, 1), (1, 0))]
+    high = [node[1:, j, i:len(x) - 1 + i] for j, i in ((0, 0), (0, 1), (1, 1), (1, 0))]
+    turns = height(0, depth[1]) < height(0, depth[0])  # elements count upward
+    cells = numpy.stack(high + low if turns else low + high, -1).reshape(-1, 8)
+    write_mesh(file, points, cells, {name: numpy.isin(node, node[k]) for name, k in sets.items()})
+
+
+def graded(first, core, end):
+    """From 0 on: equal steps up to a core, then growing ones."""
+    places = list(numpy.arange(0, core + 1e-9, first))
+    step = first
+    while places[-1] < end:
+        step *= 1.3
+        places.append(places[-1] + step)
+    return numpy.array(places)
+
+
+def hertz_scene(folder, side, upper, lower):
+    meshes = []
+    for name, n in (("a", lower), ("b", upper)):
+        half = graded(1 / n, 1.2, LENGTH)
+        x = numpy.concatenate([-half[:0:-1], half])
+        depth = graded(1 / n, 0.4, DEPTH)
+        height = (lambda px, pz: -pz) if name == "a" else (lambda px, pz: pz + px * px / (2 * RADIUS) * max(0, 1 - pz / 5))
+        file = folder / f"{name}.vtu"
+        brick(file, x, depth, height, {FACES[name]: 0, "grip": len(depth) - 1})
+        meshes.append({"name": name, "file": str(file), "material": material(POISSON)})
+    joint = interface(side, FACES, "coulomb", {"friction": FRICTION})
+    down, aside = 0.014, 0.0025
+    return {"model": {"type": "solids", "meshes": meshes}, "interfaces": [joint], "time": {"cfl": 0.9, "end": 8},
+            "loads": [{"type": "motion", "nodes": "all", "axes": [1]}, {"type": "damping", "rate": 8},
+                      {"type": "motion", "nodes": "a.grip", "axes": [0, 2]},
+                      {"type": "motion", "nodes": "b.grip", "axes": [0, 2],
+                       "path": {"rows": [[0, 0, 0, 0], [1, 0, 0, -down], [3.5, 0, 0, -down], [6.5, aside, 0, -down]],
+                                "smooth": True}}],
+            "output": {"watch": ["a.top", "b.bottom"], "every": 50}}
+
+
+def of_hats(x, values):
+    """Means over the shape functions of nodes."""
+    found = []
+    for k in range(1, len(x) - 1):
+        s = numpy.linspace(x[k - 1], x[k + 1], 2001)
+        hat = numpy.interp(s, [x[k - 1], x[k], x[k + 1]], [0, 1, 0])
+        found.append((values(s) * hat).sum() / hat.sum())
+    return numpy.array(found)
+
+
+def tractions(row, first, x, dt):
+    """Normal and tangential, over the inner nodes of a face."""
+    count = len(x)
+    impulse = numpy.array([[sum(float(row[f"n{first + j * count + k}.r{c}"]) for j in (0, 1)) for c in (0, 2)]
+                           for k in range(count)])
+    return impulse[1:-1, 1] / (0.5 * (x[2:] - x[:-2]) * WIDTH * dt), impulse[1:-1, 0] / (0.5 * (x[2:] - x[:-2]) * WIDTH * dt)
+
+
+def hertz(program, side, profile=None):
+    lower, upper = HERTZ_ELEMENTS
+    summary, rows = run(program, lambda folder: hertz_scene(folder, side, upper, lower))
+    dt, first = summary["dt"], 0
+    for name, n in (("a", lower), ("b", upper)):
+        half = graded(1 / n, 1.2, LENGTH)
+        x, depth = numpy.concatenate([-half[:0:-1], half]), graded(1 / n, 0.4, DEPTH)
+        pressed = min(rows, key=lambda row: abs(float(row["time"]) - 3.4))
+        inside = numpy.abs(x[1:-1]) < 1.2
+        parts = []
+        for row in (pressed, rows[-1]):
+            p, q = (abs(t) for t in tractions(row, first, x, dt))
+            dx = 0.5 * (x[2:] - x[:-2])
+            force, shear = (p * dx).sum(), (q * dx).sum()
+            a = math.sqrt(4 * force * RADIUS / (math.pi * MODULUS))
+            c = a * math.sqrt(max(0.0, 1 - shear / (FRICTION * force)))
+            top = 2 * force / (math.pi * a)
+            exact_p = of_hats(x, lambda s: top * numpy.sqrt(numpy.maximum(0, 1 - (s / a)**2)))
+            exact_q = FRICTION * (exact_p - (c / a if c else 0) * of_hats(
+                x, lambda s: top * numpy.sqrt(numpy.maximum(0, 1 - (s / max(c, 1e-9))**2))))
+            parts.append((math.sqrt(((p - exact_p)[inside]**2).mean()) / top,
+                          math.sqrt(((q - exact_q)[inside]**2).mean()) / max(exact_q.max(), 1e-9), a, shear / (FRICTION * force)))
+            if profile is not None and row is pressed:
+                profile[name] = (x[1:-1][inside] / a, p[inside] / top)
+        print(f"| hertz | {side} | body {name} | p rms {parts[0][0]:.1e} | q rms {parts[1][1]:.1e} | a {parts[0][2]:.3f} | "
+              f"Q/(mu F) {parts[1][3]:.2f} | iterations {summary['coupling']['sweeps'] / summary['steps']:.0f} | "
+              f"unsolved {summary['coupling']['steps_unconverged']} of {summary['steps']} | "
+              f"{summary['seconds']['interfaces'] / summary['seconds']['total']:.2f} of the time |", flush=True)
+        first += 2 * len(x) * len(depth)
+
+
+def sliding(program, side):
+    speed, end, weight = 0.0074, 272.0, 5e-4
+    made = {"model": {"type": "blocks", "blocks": [
+        dict(block("a", 0, 1, 0, 0.3), size=[3, 1, 0.3], elements=[15, 5, 2]),
+        dict(block("b", 0, 1, 0, 0.3), corner=[0.1, 0.2, 0.3], size=[0.7, 0.6, 0.3], elements=[4, 3, 2], velocity=[speed, 0, 0])]},
+        "interfaces": [interface(side, {"a": "z_max", "b": "z_min"}, "contact", {})], "time": {"cfl": 0.8, "end": end},
+        "loads": [{"type": "motion", "nodes": "a.z_min"}, {"type": "gravity", "nodes": "b", "acceleration": [0, 0, -weight]}],
+        "output": {"watch": ["b.z_max"], "every": 500, "balance": True}}
+    summary, rows = run(program, made)
+    speeds = [numpy.mean([float(row[key]) for key in row if key.endswith(".v0")]) for row in rows]
+    moves = [numpy.mean([float(row[key]) for key in row if key.endswith(".u0")]) for row in rows]
+    energy = summary["energy"]
+    print(f"| sliding | {side} | {summary['steps']} steps | path {moves[-1] / 0.2:.1f} edges | speed {min(speeds) / speed:.6f} to "
+          f"{max(speeds) / speed:.6f} | work of the interface {energy['interface_work']:.1e} of {energy['kinetic']:.1e} | "
+          f"balance {energy['balance_error']:.0e} | unsolved {summary['coupling']['steps_unconverged']} |", flush=True)
+
+
+def arc(file, radii, angles, n, m, width, sets):
+    r, z, angle = numpy.meshgrid(numpy.linspace(*radii, m + 1), [0.0, width], numpy.linspace(*angles, n + 1), indexing="ij")
+    points = numpy.stack([r * numpy.cos(angle), r * numpy.sin(angle), z], -1).reshape(-1, 3)
+    node = numpy.arange(len(points)).reshape(m + 1, 2, n + 1)
+    low = [node[:m, j, i:n + i] for j, i in ((0, 0), (0, 1), (1, 1), (1, 0))]
+    high = [node[1:, j, i:n + i] for j, i in ((0, 0), (0, 1), (1, 1), (1, 0))]
+    write_mesh(file, points, numpy.stack(low + high, -1).reshape(-1, 8),
+               {name: numpy.isin(node, node[k]) for name, k in sets.items()})
+
+
+def bowl(program, side):
+    """The lower half of a ring, and an arc of 40 degrees in it that starts 20 degrees beside the lowest point."""
+    gravity, end, n = 10.0, 6.0, 48
+    inner, start = (0.8, 1.0), math.radians(20)
+
+    def scene(folder):
+        arc(folder / "a.vtu", (1.0, 1.2), (math.radians(200), math.radians(340)), n, 2, 0.1, {"inside": 0, "outside": 2})
+        arc(folder / "b.vtu", inner, (math.radians(270) + start - math.radians(20), math.radians(270) + start + math.radians(20)),
+            8, 3, 0.1, {"outside": 3})
+        meshes = [{"name": name, "file": str(folder / f"{name}.vtu"), "material": material(0.3)} for name in "ab"]
+        return {"model": {"type": "solids", "meshes": meshes},
+                "interfaces": [interface(side, {"a": "inside", "b": "outside"}, "contact", {})],
+                "time": {"cfl": 0.8, "end": end},
+                "loads": [{"type": "motion", "nodes": "a.outside"}, {"type": "motion", "nodes": "all", "axes": [2]},
+                          {"type": "gravity", "nodes": "b", "acceleration": [0, -gravity, 0]},
+                          {"type": "damping", "nodes": "a", "rate": 60}],
+                "output": {"watch": ["b.outside"], "every": 20}}
+    summary, rows = run(program, scene)
+    # rigid: theta'' = -g sin(theta) d/(I/m) about the center of the bowl
+    half = math.radians(20)
+    mean = 2 / 3 * (inner[1]**3 - inner[0]**3) / (inner[1]**2 - inner[0]**2) * math.sin(half) / half
+    ratio = 0.5 * (inner[1]**2 + inner[0]**2)
+    times, angle, rate, rigid, dt = [float(row["time"]) for row in rows], start, 0.0, [], 1e-4
+    t = 0.0
+    for time in times:
+        while t < time - 0.5 * dt:
+            rate -= dt * gravity * mean / ratio * math.sin(angle)
+            angle += dt * rate
+            t += dt
+        rigid.append(angle)
+    keys = [key[:-3] for key in rows[0] if key.endswith(".u0")]
+    first = int(keys[0][1:])
+    corner = 270 + math.degrees(start) - 20
+    turned = []
+    for row in rows:
+        sums = 0.0
+        for k, key in enumerate(keys):
+            phi = math.radians(corner + 40 / 8 * (k % 9))
+            x, y = math.cos(phi) + float(row[key + ".u0"]), math.sin(phi) + float(row[key + ".u1"])
+            sums += math.atan2(x, -y)
+        turned.append(sums / len(keys))
+    error = max(abs(a - b) for a, b in zip(turned, rigid))
+    energy = summary["energy"]
+    print(f"| bowl | {side} | first node {first} | turned from {min(turned):.3f} to {max(turned):.3f} | error {error:.1e} of "
+          f"{start:.2f} | balance {energy['balance_error']:.0e} | work of the interface {energy['interface_work']:.1e} of "
+          f"{energy['external_work']:.1e} | sinks {summary['penetration_max']:.1e} | unsolved "
+          f"{summary['coupling']['steps_unconverged']} of {summary['steps']} |", flush=True)
+
+
+BONDS = {"tie": {}, "cohesive": {"strength": 1e5, "toughness": 100, "stiffness": 1e9},
+         "rccm": {"normal_stiffness": 1e9, "tangential_stiffness": 1e9, "adhesion_energy": 100, "initial_intensity": 1},
+         "postit": {"adhesion_limit": 1e5, "initial_adhesion": 1e5, "memory": 0}}
+
+
+def bonds(program, side):
+    for law, parameters in BONDS.items():
+        for axis in (2, 0):
+            made = {"model": {"type": "blocks", "blocks": [block("a", 0, 3, 0, 0.3), block("b", 0.5, 5, 0, 0.3)]},
+                    "interfaces": [interface(side, {"a": "z_max", "b": "z_min"}, law, parameters)],
+                    "time": {"cfl": 0.9, "end": 0.8}, "loads": [{"type": "damping", "rate": 60}],
+                    "output": {"watch": ["a.z_max", "b.z_min"], "every": 1000000}}
+            grow = {"rows": [[0, 0], [0.2, 1e3]], "smooth": True}
+            if axis == 2:
+                made["loads"] += [{"type": "motion", "nodes": "a.z_min", "axes": [2]},
+                                  {"type": "pressure", "surface": "b.z_max",
+                                   "history": {"rows": [[0, 0], [0.2, -1e3]], "smooth": True}}]
+            else:
+                made["loads"] += [{"type": "motion", "nodes": "all", "axes": [1, 2]}, {"type": "motion", "nodes": "a.z_min", "axes": [0]},
+                                  {"type": "force", "nodes": "b.z_max", "direction": [1, 0, 0], "total": True, "history": grow}]
+            try:
+                summary, rows = run(program, made)
+            except subprocess.CalledProcessError as failed:
+                print(f"| bonds | {side} | {law} | refused: {failed.stderr.decode()[-200:]}", flush=True)
+                continue
+            errors = []
+            for elements, first in ((3, 16 * layers(3)), (5, 16 * (layers(3) + 1))):
+                edge = numpy.full(elements + 1, 1.0 / elements)
+                edge[[0, -1]] *= 0.5
+                force = numpy.array([float(rows[-1][f"n{k}.r{axis}"]) for k in range(first, first + (elements + 1)**2)])
+                errors.append(abs(force / (force.sum() * numpy.outer(edge, edge).ravel()) - 1).max())
+            print(f"| bonds | {side} | {law} | {'tension' if axis == 2 else 'shear'} | {max(errors):.0e} | unsolved "
+                  f"{summary['coupling']['steps_unconverged']} |", flush=True)
+
+
+def impact(program, side):
+    for restitution in (0, 0.5, 1):
+        made = non_matching.of_blocks("impact", 3, 5, side)
+        made["interfaces"][0]["parameters"] = {"restitution": restitution}
+        made["output"] = {"watch": ["a.z_max", "b.z_min"], "every": 1}
+        summary, rows = run(program, made)
+        p, _ = non_matching.fields("impact", rows, 3, 5)
+        print(f"| impact | {side} | e {restitution} | pressure off by {abs(p - 1).max():.0e} | balance "
+              f"{summary['energy']['balance_error']:.0e} | unsolved {summary['coupling']['steps_unconverged']} |", flush=True)
+
+
+def grid(file, x, y, z, place, sets):
+    """Elements in three directions; place: of an array of points. Sets: of layers in z, or of a mask of points."""
+    points = numpy.array([[a, b, c] for c in z for b in y for a in x])
+    node = numpy.arange(len(points)).reshape(len(z), len(y), len(x))
+    n, m = len(x) - 1, len(y) - 1
+    low = [node[:-1, j:m + j, i:n + i] for j, i in ((0, 0), (0, 1), (1, 1), (1, 0))]
+    high = [node[1:, j:m + j, i:n + i] for j, i in ((0, 0), (0, 1), (1, 1), (1, 0))]
+    points = place(points)
+    masks = {name: numpy.isin(node, node[k]) for name, k in sets.items()}
+    masks["foot"] = points[:, 2].reshape(node.shape) < points[:, 2].min() + 1e-9
+    write_mesh(file, points, numpy.stack(low + high, -1).reshape(-1, 8), masks)
+    return points
+
+
+def corners(program, side):
+    """A cube with edges of 4 elements falls on a plate with edges of as long, on an edge or a corner. Roles of its face: main;
+    main with its lowest nodes in a second interface; secondary."""
+    a = 0.3
+    about_y = numpy.array([[math.cos(a), 0, math.sin(a)], [0, 1, 0], [-math.sin(a), 0, math.cos(a)]])
+    about_x = numpy.array([[1, 0, 0], [0, math.cos(a), -math.sin(a)], [0, math.sin(a), math.cos(a)]])
+    foot = {"name": "foot", "law": "contact", "nodes": "b.foot", "against": {"surface": "a.top"}}
+    for lowest, turn in (("edge", about_y), ("corner", about_y @ about_x)):
+        for role in ("main", "main, with its nodes", "secondary"):
+            kept = {}
+
+            def scene(folder):
+                x = numpy.linspace(-1.5, 1.5, 13)
+                kept["a"] = grid(folder / "a.vtu", x, x, numpy.linspace(-0.6, 0, 4), lambda points: points,
+                                 {"top": 3, "floor": 0})
+                x = numpy.linspace(-0.5, 0.5, 5)
+
+                def turned(points):
+                    points = points @ turn.T
+                    return points + [0.03, 0.04, 0.02 - points[:, 2].min()]
+                kept["b"] = grid(folder / "b.vtu", x, x, x, turned, {"bottom": 0})
+                meshes = [{"name": name, "file": str(folder / f"{name}.vtu"), "velocity": [0, 0, speed],
+                           "material": dict(material(0.3), type="neo_hookean")} for name, speed in (("a", 0), ("b", -1))]
+                # interface() takes the nodes of a for "coarse"
+                joint = interface(side if role == "secondary" else "dual coarse", {"a": "top", "b": "bottom"}, "contact", {})
+                return {"model": {"type": "solids", "meshes": meshes},
+                        "interfaces": [joint, foot] if "nodes" in role else [joint], "time": {"cfl": 0.7, "end": 0.12},
+                        "loads": [{"type": "motion", "nodes": "a.floor"}],
+                        "output": {"watch": ["a.top", "b.foot"], "every": 1, "balance": True}}
+            summary, rows = run(program, scene)
+            count, deepest = len(kept["a"]), 0.0
+            top = [k for k in range(count) if f"n{k}.u2" in rows[0]]
+            feet = [k for k in range(count, count + len(kept["b"])) if f"n{k}.u2" in rows[0]]
+            for row in rows:
+                plate = numpy.array([kept["a"][k, 2] + float(row[f"n{k}.u2"]) for k in top]).reshape(13, 13)
+                for k in feet:
+                    x, y, z = kept["b"][k - count] + [float(row[f"n{k}.u{c}"]) for c in range(3)]
+                    u, v = (x + 1.5) / 0.25, (y + 1.5) / 0.25
+                    i, j = int(u), int(v)
+                    below = numpy.array([1 - v + j, v - j]) @ plate[j:j + 2, i:i + 2] @ numpy.array([1 - u + i, u - i])
+                    deepest = max(deepest, below - z)
+            print(f"| corners | {lowest}, {role} | sinks {deepest / 0.25:.3f} edges | work of the interface "
+                  f"{summary['energy']['interface_work']:.1f} of 500 | iterations "
+                  f"{summary['coupling']['sweeps'] / summary['steps']:.0f} | unsolved "
+                  f"{summary['coupling']['steps_unconverged']} of {summary['steps']} |", flush=True)
+
+
+def picture(program, file):
+    from case_script import save
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(figsize=(6.5, 3.4))
+    s = numpy.linspace(-1, 1, 400)
+    axes.plot(s, numpy.sqrt(1 - s**2), "k", lw=1, label="exact")
+    for side, marker, color, text in (("fine", "x", "C3", "one side"), ("dual coarse", "o", "C0", "dual weights")):
+        profile = {}
+        hertz(program, side, profile)
+        for body, values in profile.items():
+            axes.plot(*values, marker, ms=4, color=color, fillstyle="none", label=text if body == "a" else None)
+    axes.set_xlabel("x over half the width of contact")
+    axes.set_ylabel("pressure over the largest")
+    axes.legend(frameon=False)
+    save(figure, file)
+
+
+CASES = {"hertz": hertz, "sliding": sliding, "bowl": bowl, "bonds": bonds, "impact": impact, "corners": corners}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("--cases", nargs="+", default=list(CASES), choices=CASES)
+    parser.add_argument("--sides", nargs="+", default=["dual fine", "dual coarse", "fine"], choices=non_matching.SIDES)
+    parser.add_argument("--picture", type=Path)
+    options = parser.parse_args()
+    if options.picture:
+        return picture(options.program, options.picture)
+    for case in options.cases:
+        for side in options.sides:
+            CASES[case](options.program, side)
+
+
+if __name__ == "__main__":
+    main()
