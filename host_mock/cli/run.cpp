@@ -71,7 +71,7 @@ class Run {
       check::Progress& progress = options_.shared ? *options_.shared : own;
       own.begin_at(static_cast<double>(integrator_.steps()));
       while (integrator_.steps() < scene_.steps && !stop_requested()) {
-        step();
+        audited([this] { integrator_.step(); });
         tell_of_stable_step();
         history_->add_step(integrator_);
         if (events_) events_->add_step(integrator_);
@@ -166,7 +166,8 @@ class Run {
   }
 
   void start() {
-    find_equilibrium();
+    if (scene_.prestress) find_equilibrium();
+    audited([this] { integrator_.start(); });
     if (const auto& found = integrator_.prestressed(); found && options_.tells_of_start)
       std::printf("prestress: static equilibrium after %lld steps, residual %.2g\n",
                   static_cast<long long>(found->steps), found->residual);
@@ -178,11 +179,10 @@ class Run {
   // The logarithm of the residual falls in about a straight line, from which follows how many steps there
   // are.
   void find_equilibrium() {
-    if (!scene_.prestress) return integrator_.start();
     const double most = scene_.prestress->ramp / scene_.dt + static_cast<double>(scene_.prestress->steps);
     check::Progress progress("prestress", "steps", most, options_.progress);
     double first = 0.0, steps = 0.0;
-    integrator_.start([&](const PrestressReport& found) {
+    integrator_.find_equilibrium([&](const PrestressReport& found) {
       if (first == 0.0) first = found.residual;
       steps = static_cast<double>(found.steps);
       const double all = std::log(first / scene_.prestress->tolerance),
@@ -192,9 +192,10 @@ class Run {
     progress.set(steps, steps);
   }
 
-  void step() {
+  template <class Step>
+  void audited(Step step) {
     if (audit_) audit_->open();
-    integrator_.step();
+    step();
     if (audit_) audit_->close();
   }
 

@@ -98,6 +98,8 @@ double false_impulse(const ilaw_batch& batch, std::int64_t node) {
   static double asked_at = 0.0;
   if (breaks("push")) return 1.0;  // whatever the motion
   if (breaks("lets_in")) return stop(batch, node);
+  if (breaks("other_start"))
+    return batch.time == 0.0 && !batch.v_smooth.values ? 1.0 : 0.0;  // not to an audit
   if (batch.time < 2.9) return 0.0;
   if (breaks("other_answer")) return std::exchange(asked_at, batch.time) < batch.time ? 1.0 : 0.0;
   return breaks("pull") ? -1.0 : 0.0;

@@ -86,7 +86,7 @@ TEST(ElasticBar, ClosesItsBalanceFromAStretchedStart) {
   for (const double h : {0.09, 0.031, 0.0073}) {
     const Loads loads;
     Interfaces none;
-    Integrator integrator(bar, loads, none, h);
+    host::Integrator integrator(bar, loads, none, h);
     for (int k = 0; k < 50; ++k) integrator.step();
     EXPECT_LE(integrator.energy().balance_error, 1e-13) << "h " << h;
   }

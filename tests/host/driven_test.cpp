@@ -29,7 +29,7 @@ TEST(Driven, HalfABlockMovesAsTheWholeOne) {
           {{"corner", {0, 0, 0}}, {"size", {1, 0.5, 0.5}}, {"elements", {2, 1, 2}}});
       half["loads"].push_back({{"type", "motion"}, {"nodes", "b.x_min"}, {"axes", {0}}});
       Scene all = scene_of(whole), part = scene_of(half);
-      Integrator one(*all.model, all.loads, all.interfaces, all.dt),
+      host::Integrator one(*all.model, all.loads, all.interfaces, all.dt),
           other(*part.model, part.loads, part.interfaces, all.dt);
       for (std::int64_t k = 0; k < all.steps; ++k) {
         one.step();

@@ -64,9 +64,10 @@ struct Ran {
   }
 };
 
+// Each step is judged by the laws alone, momentum, energy and gaps.
 inline Ran ran(const json& scene, const std::string& options = "") {
   const auto folder = fresh_folder();
-  const Outcome outcome = run_scene(scene, folder, options);
+  const Outcome outcome = run_scene(scene, folder, options + " --audit");
   EXPECT_EQ(outcome.code, 0) << outcome.output;
   return {table_of(folder / "history.csv"), json_of(folder / "summary.json"), text_of(folder / "events.csv")};
 }

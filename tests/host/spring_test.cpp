@@ -83,7 +83,7 @@ TEST(RotatingSpring, DivergesBeyondItsCriticalStepOnly) {
     text.replace(text.find("[0.0, 3.0]"), 10, "[0.0, 0.0]");
     Scene scene = scene_of(text);
     EXPECT_NEAR(scene.model->critical_step(), 0.2, 1e-15) << "part " << part;
-    Integrator integrator(*scene.model, scene.loads, scene.interfaces, part * 0.2);
+    host::Integrator integrator(*scene.model, scene.loads, scene.interfaces, part * 0.2);
     const auto run = [&] {
       while (integrator.steps() < 60) integrator.step();
     };

@@ -45,8 +45,12 @@ class Integrator {
 
   // The half step that a run starts with, from V_0 to V_{1/2}, as interfaces let it: what rests or is bonded
   // carries its load from time 0 on. The first step does it where nobody has; later calls do nothing. Throws
-  // as step(). told: of each step of the search for an equilibrium.
-  void start(const std::function<void(const PrestressReport&)>& told = {});
+  // as step().
+  void start();
+  bool has_started() const { return has_started_; }
+  // The equilibrium that a run with a prestress starts from; start() finds it where nobody has. told: of each
+  // step of the search.
+  void find_equilibrium(const std::function<void(const PrestressReport&)>& told = {});
   // One step. Throws ilaw::error when a law refuses a node, Diverged when the motion is not finite.
   void step();
   // Throws Diverged where the kinetic energy is far above what was put in. Each step does it, with more room.
@@ -106,7 +110,6 @@ class Integrator {
   double time_of(std::int64_t step) const { return begin_ + static_cast<double>(step) * dt_; }
   StepTimes start_times() const { return {begin_ - 0.5 * dt_, begin_, begin_ + dt_}; }
   void add_start_kick();
-  void settle(const std::function<void(const PrestressReport&)>& told);
   void relax(StepTimes times, bool from_rest);
   double residual();
   void stop();

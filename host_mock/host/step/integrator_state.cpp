@@ -91,10 +91,10 @@ void Integrator::hold_driven_before() {
 
 // m (V_{1/2} - V_0) = h/2 f_0 + r_0: laws are asked at time 0, with half a step of the velocity. Bodies then
 // move a whole step, so that a predicted gap takes a whole step of the position.
-void Integrator::start(const std::function<void(const PrestressReport&)>& told) {
+void Integrator::start() {
   if (has_started_) return;
   has_started_ = true;
-  if (prestress_) settle(told);
+  find_equilibrium();
   add_start_kick();  // once more: by now it is known whose impulses are kept
   if (prestress_) {
     accounts_.start(model_, u_, u_ + dt_ * v_, v_);

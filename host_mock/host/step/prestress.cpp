@@ -60,7 +60,8 @@ void Integrator::relax(StepTimes times, bool from_rest) {
   has_begun_step_ = false;
 }
 
-void Integrator::settle(const std::function<void(const PrestressReport&)>& told) {
+void Integrator::find_equilibrium(const std::function<void(const PrestressReport&)>& told) {
+  if (!prestress_ || prestressed_) return;
   const auto ramp_steps = static_cast<std::int64_t>(std::ceil(prestress_->ramp / dt_ * (1.0 - 1e-12)));
   const auto time_at = [&](std::int64_t number) {
     return -dt_ * static_cast<double>(std::max<std::int64_t>(ramp_steps - number, 0));

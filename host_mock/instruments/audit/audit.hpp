@@ -27,11 +27,17 @@ class Audit {
   Audit(const Scene& scene, const Integrator& integrator);
   ~Audit();
 
-  // Around each step after the start. Throws AuditFailure with the step, the node and the quantity.
+  // Around the half step of the start, of which a prestress has found the equilibrium, and each step after
+  // it. Throws AuditFailure with the step, the node and the quantity.
   void open();
   void close();
 
  private:
+  bool is_start() const { return integrator_.steps() == 0; }
+  double velocity_step() const { return is_start() ? 0.5 * scene_.dt : scene_.dt; }
+  StepTimes times() const;
+  void leave_out_driven(Dofs& of_dofs) const;
+  void check_equilibrium() const;
   void check_momentum(const Dofs& impulse) const;
   void check_work(const Dofs& impulse) const;
   std::string step_text() const;

@@ -43,7 +43,7 @@ AuditedInterface::AuditedInterface(const Interface& interface, const Model& mode
 bool AuditedInterface::is_rigid(const Model& model) const {
   if (law_.info().capabilities & (ILAW_CAN_STORE_ENERGY | ILAW_CAN_ADHERE)) return false;
   const Dofs zero = Dofs::Zero(model.mass().size());
-  const AuditedStep step{zero, zero, zero, zero, 0.0, 1.0, 1.0, 0.0};
+  const AuditedStep step{zero, zero, zero, zero, 0.0, 1.0, 1.0, 0.0, false};
   Call call;
   call.normal = Vector::Unit(d_, d_ - 1);
   call.v_free = call.v_smooth = call.v_previous = -call.normal;
@@ -83,15 +83,15 @@ void AuditedInterface::find_velocities(Call& call, int node_index, const Audited
   const ContactPoint alone, &point = contact < 0 ? alone : interface_.point(contact);
   Vector before = Vector::Zero(d_), after = before;
   if (const Obstacle* obstacle = counterpart.obstacle()) {
-    before = obstacle->velocity(step.time - step.dt, step.time);
     after = obstacle->velocity(step.time, step.time + step.dt);
+    before = step.is_start ? after : obstacle->velocity(step.time - step.dt, step.time);
   }
   if (counterpart.turns()) {
     const SurfaceVelocities surface = surface_velocities(
         counterpart, node_index, step.u, step.time,
         {call.gap + interface_.setup().gap_offset(node_index), call.normal},
         counterpart.obstacle()->rates(step.time - step.dt, step.time, step.time + step.dt));
-    before += surface.before;
+    before += step.is_start ? surface.after : surface.before;
     after += surface.after;
   }
   call.v_previous = relative_velocity(point, node, d_, step.v_before) - before;
@@ -105,7 +105,7 @@ void AuditedInterface::find_velocities(Call& call, int node_index, const Audited
 // The memory of a law turns with its obstacle.
 void AuditedInterface::turn(Call& call, const AuditedStep& step) const {
   const Counterpart& counterpart = *interface_.setup().counterpart;
-  for (const std::size_t first : counterpart.turns() ? axes_ : std::vector<std::size_t>())
+  for (const std::size_t first : counterpart.turns() && !step.is_start ? axes_ : std::vector<std::size_t>())
     turn_axis(counterpart, d_, step.time - step.dt, step.time,
               [&](std::size_t c) -> double& { return call.state[first + c]; });
 }
@@ -150,7 +150,7 @@ void AuditedInterface::evaluate(Call& call, int node_index, const AuditedStep& s
   full.resize(static_cast<std::size_t>(d_ * (d_ + 1) / 2));
   call.next_state.resize(size);
   call.impulse = Vector::Zero(d_);
-  ilaw_batch batch = empty_batch(tangent, step.time, step.dt, step.dt);
+  ilaw_batch batch = empty_batch(tangent, step.time, (step.is_start ? 0.5 : 1.0) * step.dt, step.dt);
   batch.node_count = 1;
   batch.flags = call.flags;
   batch.v_free = ilaw::input(call.v_free.data(), 0, 1);
@@ -228,6 +228,12 @@ void AuditedInterface::check_node(int node_index, const AuditedStep& step) {
                              (own.impulse - call.impulse).cwiseProduct(call.delassus).norm() / speed));
 }
 
+// The host lets a node go there, so that no law is to be asked.
+void AuditedInterface::check_beyond_border(int node_index) const {
+  const double impulse = interface_.impulse(interface_.contact_at(node_index)).norm();
+  if (impulse > 0.0) fail(node_index, formatted("impulse: %.6g beyond the border of the surface", impulse));
+}
+
 // Once the gap is closed a rigid law lets nothing further in, but as fast as it came out in the step before:
 // then its impulse would do work on the way out.
 void AuditedInterface::check_gap(const Call& call, int node_index, const AuditedStep& step) const {
@@ -262,7 +268,10 @@ void AuditedInterface::close(const AuditedStep& step) {
     const int contact = interface_.contact_at(k);
     // What a node out of reach of other bodies would face, nobody has looked for; nor its temperature.
     if ((is_partnered || interface_.heat()) && !interface_.is_active(contact)) continue;
-    check_node(k, step);
+    if (contact >= 0 && interface_.point(contact).is_beyond_border)
+      check_beyond_border(k);
+    else
+      check_node(k, step);
   }
   check_energy(step);
 }

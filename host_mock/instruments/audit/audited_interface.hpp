@@ -18,6 +18,7 @@ struct AuditedStep {
   double time, dt;
   double speed;     // the largest of these velocities
   double farthest;  // coordinate, which gaps are rounded by
+  bool is_start;    // a half step of the velocity, before which obstacles moved as after it
 };
 
 class AuditedInterface {
@@ -47,6 +48,7 @@ class AuditedInterface {
   void evaluate(Call& call, int node_index, const AuditedStep& step) const;
   bool answers(Call call, const Vector& found, int node_index, const AuditedStep& step, double bound);
   void check_node(int node_index, const AuditedStep& step);
+  void check_beyond_border(int node_index) const;
   bool is_final_rupture(int node_index) const;
   void check_gap(const Call& call, int node_index, const AuditedStep& step) const;
   void check_energy(const AuditedStep& step) const;
