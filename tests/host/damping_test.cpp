@@ -1,6 +1,10 @@
 // Bodies that are damped, and loads over time, against closed forms.
 #include "run_result.hpp"
 
+#include <Eigen/Geometry>
+
+#include <complex>
+
 namespace ilaw::host::testing {
 namespace {
 
@@ -153,6 +157,125 @@ TEST(History, TakesASineAndRefusesOneOfDamping) {
       json::parse(R"({"type": "damping", "rate": 1, "history": {"sine": {"amplitude": 3, "frequency": 5}}})");
   source["output"]["forces"] = {"floor"};
   EXPECT_EQ(refusal_of(source), "/loads/1/history: found a sine, expected rows: a rate is not negative");
+}
+
+// ---- bulk viscosity -------------------------------------------------------------------------------------
+
+// The stretch of one element whose volume vibrates alone, from rest, at steps of h: the roots of
+//   z^2 - (2 - h c - h^2 w^2) z + (1 - h c) = 0.
+double damped_vibration(double start, double w, double c, double h, std::int64_t steps) {
+  const std::complex<double> half = 1.0 - 0.5 * h * c - 0.5 * h * h * w * w,
+                             part = std::sqrt(half * half - (1.0 - h * c));
+  const double after = start * (1.0 - 0.5 * h * h * w * w);  // half a kick, then a step
+  const std::complex<double> one = half + part, other = half - part,
+                             of_one = (after - other * start) / (one - other);
+  return (of_one * std::pow(one, steps) + (start - of_one) * std::pow(other, steps)).real();
+}
+
+// A bar of one element, and a cube, which swells as a whole.
+struct Swelling {
+  json scene;
+  double w, c;  // per unit of b1
+};
+std::vector<Swelling> swelling_bodies() {
+  const double young = 9.0, poisson = 0.25, density = 4.0, length = 0.5;
+  const double speed = std::sqrt(young / density);
+  json of_bar = scene_of_bars({bar("b", 0, length, 1, young, density)}, {});
+  of_bar["initial"] = {{{"gradient", {{1e-3}}}}};
+  json of_cube = scene_of_blocks(
+      {block("b", {0, 0, 0}, {length, length, length}, {1, 1, 1}, elastic(young, poisson, density))}, "[]");
+  of_cube["initial"] = {{{"gradient", {{1e-3, 0, 0}, {0, 1e-3, 0}, {0, 0, 1e-3}}}}};
+  const double lame = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)),
+               shear = 0.5 * young / (1.0 + poisson), bulk = lame + 2.0 / 3.0 * shear;
+  return {{of_bar, 2.0 * speed / length, 4.0 * speed / length},
+          {of_cube, std::sqrt(12.0 * bulk / density) / length,
+           12.0 * std::sqrt((lame + 2.0 * shear) / density) / length}};
+}
+
+TEST(BulkViscosity, DampsASwellingElement) {
+  for (const auto& [swelling, w, c] : swelling_bodies())
+    for (const double linear : {0.06, 0.2})
+      for (const double cfl : {0.9, 0.41, 0.07}) {
+        GIVEN(w, linear, cfl);
+        json source = until_at_cfl(20.0, cfl, swelling);
+        source["loads"] = {{{"type", "bulk_viscosity"}, {"linear", linear}, {"quadratic", 0}}};
+        auto [scene, integrator] = run_to_end(source);
+        const Dofs& u = integrator.displacement();
+        const double stretch = (u[u.size() - 1] - u[0]) / 0.5;
+        EXPECT_NEAR(stretch, damped_vibration(1e-3, w, linear * c, scene.dt, scene.steps), 1e-13);
+        EXPECT_LT(integrator.energy().balance_error, 1e-13);
+        EXPECT_LT(integrator.energy().damping_work, 0.0);
+      }
+}
+
+// As a stretched element comes back it is compressed, and the second step feels the rate of the first.
+TEST(BulkViscosity, ResistsCompressionQuadratically) {
+  for (const double start : {0.1, -0.1}) {
+    json source = until_at_cfl(1.0, 0.5, swelling_bodies()[0].scene);
+    source["initial"][0]["gradient"][0][0] = start;
+    source["loads"] = {{{"type", "bulk_viscosity"}}};
+    auto [scene, integrator] = simulation_of(source);
+    const double h = scene.dt, length = 0.5, speed = 1.5, k = std::pow(2.0 * speed / length, 2);
+    integrator.step();
+    const double rate = -0.5 * h * k * start, stretch = start + h * rate;
+    const double viscosity = 0.06 * speed * length + std::pow(1.2 * length, 2) * std::max(-rate, 0.0);
+    const double expected = rate - h * k * stretch - h * viscosity * 4.0 / (length * length) * rate;
+    EXPECT_NEAR((integrator.velocity()[1] - integrator.velocity()[0]) / length, expected, 1e-14);
+  }
+}
+
+TEST(BulkViscosity, ReducesTheCriticalStep) {
+  const double critical = 0.5 / 1.5, viscous = critical * (std::sqrt(1.0 + 0.06 * 0.06) - 0.06);
+  json source = until_at_cfl(1.0, 1.0, swelling_bodies()[0].scene);
+  source["loads"] = {{{"type", "bulk_viscosity"}}};
+  EXPECT_NEAR(scene_of(source).dt, viscous, 1e-15);
+  source["time"] = {{"dt", 1.001 * viscous}, {"end", 1}};
+  EXPECT_THAT(refusal_of(source), HasSubstr("the model's critical step"));
+  source["time"]["dt"] = 0.99 * viscous;
+  source["initial"][0]["gradient"][0][0] = 0.3;  // comes back at a rate that takes more of the step
+  EXPECT_THAT(run_to_end(source).integrator.warnings(),
+              Contains(HasSubstr("where bulk viscosity is stable up to")));
+}
+
+// A body that has turned, and turns, keeps its volume.
+TEST(BulkViscosity, LetsABodyTurn) {
+  json source = until_at_cfl(
+      1.0, 0.5,
+      scene_of_blocks({block("b", {0, 0, 0}, {1, 1, 1}, {2, 1, 1},
+                             {{"type", "neo_hookean"}, {"young", 1}, {"poisson", 0.3}, {"density", 1}})},
+                      "[]"));
+  source["loads"] = {{{"type", "bulk_viscosity"}}};
+  const Scene scene = scene_of(source);
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  const Eigen::Vector3d spin(0.3, -2, 0.7);
+  const Dofs& x = scene.model->position();
+  Dofs u(x.size()), v(x.size()), impulse = Dofs::Zero(x.size());
+  for (Eigen::Index k = 0; k < x.size(); k += 3) {
+    u.segment<3>(k) = turn * x.segment<3>(k) - x.segment<3>(k);
+    v.segment<3>(k) = spin.cross(turn * x.segment<3>(k));
+  }
+  Dofs after = v;
+  scene.loads[0]->correct({0.0, 1.0}, {u, v}, after, impulse);
+  EXPECT_LT(impulse.cwiseAbs().maxCoeff(), 1e-14);
+}
+
+TEST(BulkViscosity, NeedsElements) {
+  json source = resting_point("contact", {}, 1e-2);
+  source["loads"].push_back({{"type", "bulk_viscosity"}});
+  EXPECT_EQ(refusal_of(source), "/loads/1: this model has no elements whose volume could change");
+}
+
+TEST(BulkViscosity, ClosesTheBalanceOfImpacts) {
+  for (const char* name : {"bar_on_wall", "block_impact"}) {
+    json source = shipped(name);
+    source["time"]["cfl"] = 0.5;
+    source["loads"].push_back({{"type", "bulk_viscosity"}});
+    const Ran run = ran(source);
+    EXPECT_LT(run.energy("balance_error"), 1e-13) << name;
+    EXPECT_LT(run.energy("damping_work"), 0.0) << name;
+    EXPECT_EQ(run.summary["warnings"], json::array()) << name;
+  }
 }
 
 }  // namespace

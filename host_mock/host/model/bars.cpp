@@ -51,7 +51,8 @@ Bars::Bars(const std::vector<BarSetup>& bars)
   int first = 0;
   for (const BarSetup& bar : bars) {
     const double element_length = bar.length / bar.elements;
-    runs_.push_back({first, bar.elements, bar.young * bar.section / element_length, bar.section});
+    runs_.push_back({first, bar.elements, bar.young * bar.section / element_length, bar.section,
+                     element_length, bar.density});
     critical_step_ = std::min(critical_step_, element_length * std::sqrt(bar.density / bar.young));
     for (int k = 0; k < bar.elements; ++k) {
       mesh_.cells.push_back(first + k);
@@ -86,6 +87,24 @@ std::vector<Eigen::Matrix3d> Bars::stresses(const Dofs& u) const {
       stress(0, 0) = run.stiffness * (u[k + 1] - u[k]) / run.section;
     }
   return stresses;
+}
+
+// Half of the mass is at each end.
+std::vector<VolumeElement> Bars::volume_elements() const {
+  std::vector<VolumeElement> elements;
+  for (const Run& run : runs_)
+    for (int k = run.first; k < run.first + run.elements; ++k) {
+      const double length = run.element_length, mass = run.density * run.section * length;
+      Eigen::Matrix3Xd gradients = Eigen::Matrix3Xd::Zero(3, 2);
+      gradients.row(0) << -1.0 / length, 1.0 / length;
+      elements.push_back({{k, k + 1},
+                          gradients,
+                          mass,
+                          length,
+                          length * std::sqrt(run.stiffness / mass),
+                          4.0 / (length * length)});
+    }
+  return elements;
 }
 
 }  // namespace ilaw::host

@@ -27,6 +27,7 @@ class Bars : public Model {
   void add_internal_forces(const Dofs& u, Dofs& force) const override;
   double potential(const Dofs& u) const override;
   std::vector<Eigen::Matrix3d> stresses(const Dofs& u) const override;
+  std::vector<VolumeElement> volume_elements() const override;
   // Element length over wave speed: with lumped mass exactly the limit 2/omega_max of the longest
   // mesh.
   double critical_step() const override { return critical_step_; }
@@ -36,6 +37,7 @@ class Bars : public Model {
     int first, elements;
     double stiffness;  // of one element
     double section;
+    double element_length, density;
   };
   std::vector<Run> runs_;  // one per bar
   double critical_step_;

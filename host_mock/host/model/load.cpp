@@ -5,6 +5,13 @@
 
 namespace ilaw::host {
 
+double critical_step(const Model& model, const Loads& loads, Motions at) {
+  double rate = 0.0;
+  for (const auto& load : loads) rate += load->damping_rate(at);
+  const double alone = model.critical_step();
+  return rate == 0.0 ? alone : damped_critical_step(4.0 / (alone * alone), rate);
+}
+
 const std::vector<int> Load::none_;
 
 Force::Force(std::vector<int> nodes, std::vector<double> shares, Vector direction, Table history)

@@ -6,6 +6,7 @@
 #include "model/model.hpp"
 #include "model/obstacle.hpp"
 
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -26,6 +27,10 @@ struct Motions {
   const Dofs &u, &v;
 };
 
+// Critical step of central difference with dampers at the velocity before: h^2 k + 2 h c <= 4 for all
+// motions, k and c the stiffness and damping over mass (Jury's conditions).
+inline double damped_critical_step(double k, double c) { return 4.0 / (c + std::sqrt(c * c + 4.0 * k)); }
+
 class HeatLoad;
 
 class Load {
@@ -44,6 +49,9 @@ class Load {
   // Whether that is the same in all steps.
   virtual bool transmits_steadily() const { return true; }
   virtual bool corrects() const { return false; }
+  // Where it damps explicitly: the largest rate of damping of a motion, force over mass and velocity, which
+  // reduces the critical step.
+  virtual double damping_rate(Motions /*at*/) const { return 0.0; }
   // Whether its work is that of damping.
   virtual bool damps() const { return false; }
   // Whether it also acts on nodes that a motion drives.
@@ -61,6 +69,9 @@ class Load {
 };
 
 using Loads = std::vector<std::unique_ptr<Load>>;
+
+// The critical step of a model with its explicit dampers.
+double critical_step(const Model& model, const Loads& loads, Motions at);
 
 // A force along a direction, of a size that follows a table. Gravity is one: an acceleration is the
 // direction, the share of a node its mass.

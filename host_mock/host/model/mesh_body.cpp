@@ -80,6 +80,21 @@ Eigen::Matrix<double, 1, 4> lumped_volumes(const Tetrahedron& element) {
   return Eigen::Matrix<double, 1, 4>::Constant(0.25 * element.volume);
 }
 
+template <class Nodes, int N, int P>
+VolumeElement volume_element_of(const SolidElement<N, P>& element, const Nodes& nodes,
+                                const Material& material) {
+  Eigen::Matrix<double, 3, N> mean = Eigen::Matrix<double, 3, N>::Zero();
+  for (std::size_t g = 0; g < P; ++g) mean += element.weights[g] / element.volume * element.gradients[g];
+  const double response =
+      element.volume * (mean.colwise().squaredNorm().array() / lumped_volumes(element).array()).sum();
+  return {{nodes.begin(), nodes.end()},
+          mean,
+          material.density * element.volume,
+          std::cbrt(element.volume),
+          std::sqrt((material.lame() + 2.0 * material.shear_modulus()) / material.density),
+          response};
+}
+
 // Of a symmetric matrix.
 double largest_eigenvalue(const Eigen::MatrixXd& matrix) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly)
@@ -257,6 +272,13 @@ void MeshBody::add_mass(Dofs& mass) const {
   };
   for (std::size_t k = 0; k < hexahedra_.size(); ++k) add(hexahedra_[k], lumped_volumes(shapes_[k]));
   for (const Tetrahedron& element : tetrahedra_) add(element.nodes, lumped_volumes(element));
+}
+
+void MeshBody::add_volume_elements(std::vector<VolumeElement>& all) const {
+  for (std::size_t k = 0; k < hexahedra_.size(); ++k)
+    all.push_back(volume_element_of(shape(k), hexahedra_[k], material_));
+  for (const Tetrahedron& element : tetrahedra_)
+    all.push_back(volume_element_of(element, element.nodes, material_));
 }
 
 double MeshBody::critical_step() const {

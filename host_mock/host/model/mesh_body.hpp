@@ -57,6 +57,7 @@ class MeshBody {
   // Cauchy's stress of each element, appended.
   void add_stresses(const Dofs& u, std::vector<Eigen::Matrix3d>& of_hexahedra,
                     std::vector<Eigen::Matrix3d>& of_tetrahedra) const;
+  void add_volume_elements(std::vector<VolumeElement>& all) const;
   // From the largest eigenvalue of each element, which bounds that of the whole (Irons and Treharne 1971).
   // Mean dilatation makes it no smaller: it lowers the energy of every motion (Jensen).
   double critical_step() const;

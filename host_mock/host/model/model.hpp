@@ -42,6 +42,15 @@ struct Mesh {
   std::vector<int> tetrahedra;  // four nodes each; their numbers follow those of the cells
 };
 
+// An element as a bulk viscosity sees it.
+struct VolumeElement {
+  std::vector<int> nodes;
+  Eigen::Matrix3Xd gradients;  // of the shape functions, their mean in the undeformed element; rows beyond
+                               // the dimension are 0
+  double mass, length, wave_speed;
+  double response;  // mass sum_a |gradient_a|^2/m_a, with the masses of its nodes in it alone
+};
+
 class ThermalModel;
 
 class Model {
@@ -83,6 +92,7 @@ class Model {
   virtual double potential(const Dofs& /*u*/) const { return 0.0; }
   // Cauchy's stress of each cell of the mesh, its mean over the deformed cell; empty without a mesh.
   virtual std::vector<Eigen::Matrix3d> stresses(const Dofs& /*u*/) const { return {}; }
+  virtual std::vector<VolumeElement> volume_elements() const { return {}; }
   // A bound from below on the largest stable step of central difference (about the undeformed body
   // where the model is not linear); infinite without internal forces.
   virtual double critical_step() const { return std::numeric_limits<double>::infinity(); }

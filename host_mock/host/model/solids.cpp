@@ -80,4 +80,10 @@ std::vector<Eigen::Matrix3d> Solids::stresses(const Dofs& u) const {
   return stresses;
 }
 
+std::vector<VolumeElement> Solids::volume_elements() const {
+  std::vector<VolumeElement> elements;
+  for (const MeshBody& body : bodies_) body.add_volume_elements(elements);
+  return elements;
+}
+
 }  // namespace ilaw::host

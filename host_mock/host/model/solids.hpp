@@ -30,6 +30,7 @@ class Solids : public Model {
   void add_internal_forces(const Dofs& u, Dofs& force) const override;
   double potential(const Dofs& u) const override;
   std::vector<Eigen::Matrix3d> stresses(const Dofs& u) const override;
+  std::vector<VolumeElement> volume_elements() const override;
   double critical_step() const override { return *std::min_element(steps_.begin(), steps_.end()); }
   bool critical_step_is_exact() const override { return false; }
 

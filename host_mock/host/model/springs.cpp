@@ -58,13 +58,10 @@ double largest_eigenvalue(const Model& model, const std::vector<Spring>& springs
   return largest;
 }
 
-// Critical step of central difference with dampers at the velocity before: h^2 k + 2 h c <= 4 for all
-// motions, k and c their stiffness and damping over mass (Jury's conditions).
 double critical_step_of(const Model& body, const std::vector<Spring>& springs) {
   const double own = 2.0 / body.critical_step();
   const double k = own * own + largest_eigenvalue(body, springs, &Spring::stiffness);
-  const double c = largest_eigenvalue(body, springs, &Spring::damping);
-  return 4.0 / (c + std::sqrt(c * c + 4.0 * k));
+  return damped_critical_step(k, largest_eigenvalue(body, springs, &Spring::damping));
 }
 
 Nodes nodes_of(const Model& model) {

@@ -35,6 +35,7 @@ class Sprung : public Model {
   bool is_linear() const override { return false; }
   double potential(const Dofs& u) const override;
   std::vector<Eigen::Matrix3d> stresses(const Dofs& u) const override { return body_->stresses(u); }
+  std::vector<VolumeElement> volume_elements() const override { return body_->volume_elements(); }
   double critical_step() const override { return critical_step_; }
   // One spring from a point to its anchor has the bound as its eigenvalue.
   bool critical_step_is_exact() const override {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/readers.hpp"
 
+#include "model/bulk_viscosity.hpp"
 #include "model/load.hpp"
 #include "model/pressure.hpp"
 #include "scene/json_text.hpp"
@@ -60,6 +61,12 @@ std::unique_ptr<Load> read_prescribed(const json& load, const Model& model, cons
   return std::make_unique<PrescribedMotion>(model, set.nodes, axes, read_motion(load, d, pointer));
 }
 
+std::unique_ptr<Load> read_bulk_viscosity(const json& load, const Model& model, const std::string& pointer) {
+  if (model.volume_elements().empty())
+    throw SceneError(pointer, "this model has no elements whose volume could change");
+  return std::make_unique<BulkViscosity>(model, load.value("linear", 0.06), load.value("quadratic", 1.2));
+}
+
 std::unique_ptr<Load> read_pressure(const json& load, const Model& model, const std::string& pointer) {
   return std::make_unique<Pressure>(
       model, select_surface(load["surface"].get<std::string>(), model, pointer + "/surface").facets,
@@ -79,6 +86,7 @@ std::unique_ptr<Load> read_heat_load(const json& load, const Model& model, const
 std::unique_ptr<Load> read_load(const json& load, const Model& model, const std::string& pointer) {
   const int d = model.dimension();
   const std::string type = load["type"].get<std::string>();
+  if (type == "bulk_viscosity") return read_bulk_viscosity(load, model, pointer);
   if (type == "pressure") return read_pressure(load, model, pointer);
   const NodeSet set = select_nodes(load.value("nodes", json("all")), model, pointer + "/nodes");
   if (type == "temperature" || type == "heat_flux") return read_heat_load(load, model, set, pointer);

@@ -18,6 +18,11 @@ ThermalModel::StableStep thermal_step(const Model& model) {
   return model.thermal() ? model.thermal()->stable_step() : ThermalModel::StableStep{};
 }
 
+double motion_step(const Scene& scene) {
+  const Model& model = *scene.model;
+  return critical_step(model, scene.loads, {model.initial_displacement(), model.initial_velocity()});
+}
+
 // A step given as such may be larger than the model can stand.
 void check_step(Scene& scene) {
   const Model& model = *scene.model;
@@ -26,8 +31,9 @@ void check_step(Scene& scene) {
   if (scene.dt > thermal * (1.0 + rounding))
     throw mistake("/time/dt", json(scene.dt).dump(),
                   "at most " + json(thermal).dump() + ", the stable step of conduction in '" + body + "'");
-  if (!(scene.dt > model.critical_step() * (1.0 + rounding))) return;
-  const std::string found = json(scene.dt).dump(), critical = json(model.critical_step()).dump();
+  const double step = motion_step(scene);
+  if (!(scene.dt > step * (1.0 + rounding))) return;
+  const std::string found = json(scene.dt).dump(), critical = json(step).dump();
   if (model.critical_step_is_exact())
     throw mistake("/time/dt", found, "at most " + critical + ", the model's critical step");
   scene.warnings.push_back("/time/dt: found " + found +
@@ -40,7 +46,7 @@ void check_step(Scene& scene) {
 void read_time(const json& time, Scene& scene) {
   require_one_of(time, "dt", "cfl", "'dt' and 'cfl'", "/time");
   if (time.contains("cfl")) {
-    const double critical = std::min(scene.model->critical_step(), thermal_step(*scene.model).step);
+    const double critical = std::min(motion_step(scene), thermal_step(*scene.model).step);
     if (!std::isfinite(critical))
       throw SceneError("/time/cfl",
                        "this model has no critical time step (no internal forces), expected 'dt'");

@@ -97,12 +97,12 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
       read_springs(scene.source.value("springs", json::array()), *scene.model);
   if (!springs.empty()) scene.model = std::make_unique<Sprung>(std::move(scene.model), springs);
   scene.model->heat(read_thermal(scene.source["model"], *scene.model));
-  read_time(scene.source["time"], scene);
   if (scene.source.contains("prestress")) scene.prestress = read_prestress(scene.source["prestress"]);
   const json loads = scene.source.value("loads", json::array());
   for (std::size_t i = 0; i < loads.size(); ++i)
     scene.loads.push_back(read_load(loads[i], *scene.model, at("/loads", i)));
   check_held_temperatures(scene);
+  read_time(scene.source["time"], scene);
   if (std::any_of(springs.begin(), springs.end(), [](const Spring& spring) { return spring.damping > 0.0; }))
     scene.loads.push_back(std::make_unique<Dampers>(*scene.model, springs));  // after those with a number
   for (std::size_t i = 0; i < scene.source["interfaces"].size(); ++i)

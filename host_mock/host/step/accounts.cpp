@@ -34,7 +34,7 @@ void for_each_member(Any& tally, Work work) {
     work(*count);
   work(tally.sweeps_max);
   for (auto* value : {&tally.coupling_residual_max, &tally.coupling_tolerance, &tally.coupling_energy,
-                      &tally.penetration_max, &tally.stable_step})
+                      &tally.penetration_max, &tally.stable_step, &tally.viscous_step})
     work(*value);
   for (auto& count : tally.status_counts) work(count);
 }
@@ -140,6 +140,10 @@ bool Accounts::has_diverged(const Model& model, const Dofs& v, double speed, dou
 }
 
 std::string Accounts::step_warning(double dt) const {
+  if (dt > tally_.viscous_step)
+    return formatted(
+        "the time step is %g, where bulk viscosity is stable up to %g: a body is compressed too fast for it",
+        dt, tally_.viscous_step);
   if (!(dt > tally_.stable_step)) return "";
   return formatted(
       "the time step is %g, where a law is stable up to %g at its nodes: an explicit spring is too stiff for it",
@@ -160,7 +164,7 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
         "%lld node(s) went over the border of a surface while they touched it: beyond it nothing holds them; a node "
         "that shall stay needs a surface that reaches farther",
         static_cast<long long>(tally_.left_surface)));
-  if (dt > tally_.stable_step) warnings.push_back(step_warning(dt));
+  if (const std::string warning = step_warning(dt); !warning.empty()) warnings.push_back(warning);
   if (energy.kinetic > much_vibration * energy_.largest())
     warnings.push_back(formatted(
         "the kinetic energy is %.2g, where all that was put in is at most %.2g: the fastest vibration of the "

@@ -27,7 +27,8 @@ struct Tally {
   double coupling_energy = 0.0;        // that laws may account for wrongly, over all steps
   double penetration_max = 0.0;
   std::int64_t left_surface = 0;  // nodes that went over the border of a surface while they touched it
-  double stable_step = std::numeric_limits<double>::infinity();  // the least that a law asked for
+  double stable_step = std::numeric_limits<double>::infinity();   // the least that a law asked for
+  double viscous_step = std::numeric_limits<double>::infinity();  // the least that bulk viscosity allowed
   std::array<std::int64_t, ILAW_STATUS_COUNT> status_counts{};
 };
 
@@ -51,6 +52,7 @@ class Accounts {
   // The work of interfaces at the start is part of that state already. speed: the largest then.
   void add_start(const Interfaces& interfaces, double speed);
   void add_solution(const ilaw_coupled_report& solution, double tolerance);
+  void note_viscous_step(double step) { tally_.viscous_step = std::min(tally_.viscous_step, step); }
   // Whether contacts that do not agree change the energy by more than a small part of it.
   bool is_wrong(const Model& model, const ilaw_coupled_report& solution, const Dofs& v_before) const;
   void add_step(const Model& model, const Interfaces& interfaces, const StepRecord& step);

@@ -179,6 +179,9 @@ void Integrator::correct(StepTimes step) {
       leave_driven_undamped(loads_, model_.dimension(), undamped, v_, kept.size() == 0 ? sum : kept);
     if (kept.size() != 0) sum += kept;
   }
+  if (const double step_limit = critical_step(model_, loads_, {u_, v_before_});
+      step_limit < model_.critical_step())
+    accounts_.note_viscous_step(step_limit);
 }
 
 // An impulse after a load. Damping by mass leaves all of it along driven axes, where a motion takes it.

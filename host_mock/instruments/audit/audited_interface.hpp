@@ -62,7 +62,7 @@ class AuditedInterface {
   bool is_rigid_ = false;
   std::vector<std::vector<double>> states_;  // by node_index, before the step
   std::array<double, ILAW_ENERGY_COUNT> energy_{};
-  double work_scale_ = 0.0;  // of a step
+  double work_scale_ = 0.0, work_rounding_ = 0.0;  // of a step
 };
 
 }  // namespace ilaw::host

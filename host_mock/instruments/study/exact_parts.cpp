@@ -17,8 +17,11 @@ OneBody one_body(const Scene& scene, const char* kind, const std::string& wanted
   const json& model = scene.source["model"];
   require(model["type"] == kind && model[kind].size() == 1, wanted);
   const json& interface = scene.source["interfaces"][0];
-  return {model, model[kind][0], interface, scene.source.value("loads", json::array()),
-          interface.value("parameters", json::object())};
+  json loads = json::array();
+  for (const json& load : scene.source.value("loads", json::array()))
+    if (load["type"] != "bulk_viscosity")
+      loads.push_back(load);  // an aid of the mesh, which the body does not have
+  return {model, model[kind][0], interface, loads, interface.value("parameters", json::object())};
 }
 
 ExactNode node_of(const std::function<Motion1D(double)>& motion) {
