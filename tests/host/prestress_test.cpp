@@ -9,8 +9,8 @@
 namespace ilaw::host::testing {
 namespace {
 
-constexpr double young = 1e6, density = 1000.0, gravity = 10.0, height = 0.5, side = 0.1;
-constexpr double weight = density * gravity * height * side * side;
+constexpr double young = 1e6, density = 1000.0, acceleration = 10.0, height = 0.5, side = 0.1;
+constexpr double weight = density * acceleration * height * side * side;
 
 // A column on a floor, under its weight.
 json column(double cfl) {
@@ -39,7 +39,7 @@ TEST(Prestress, ColumnStandsOnItsWeight) {
     Scene scene = scene_of(column(cfl).dump());
     Integrator integrator = integrator_of(scene);
     integrator.start();
-    const double sunk = -density * gravity * height * height / (2.0 * young);
+    const double sunk = -density * acceleration * height * height / (2.0 * young);
     const auto top = [&] { return integrator.displacement()[integrator.displacement().size() - 1]; };
     EXPECT_NEAR(top(), sunk, 1e-6 * std::abs(sunk)) << cfl;
     EXPECT_EQ(integrator.steps(), 0);
@@ -55,8 +55,52 @@ TEST(Prestress, ColumnStandsOnItsWeight) {
     const EnergyReport energy = integrator.energy();
     EXPECT_LT(energy.balance_error, 1e-12);
     // Stored by a stress that grows linearly from the top: A rho^2 g^2 L^3/(6 E), but for the element's part.
-    const double stored = side * side * std::pow(density * gravity, 2) * std::pow(height, 3) / (6.0 * young);
+    const double stored =
+        side * side * std::pow(density * acceleration, 2) * std::pow(height, 3) / (6.0 * young);
     EXPECT_NEAR(energy.potential, stored * (1.0 - 0.25 / 36.0), 1e-3 * stored);
+  }
+}
+
+// A bar, a cube and a stack of three blocks, each of height 1 on a floor under its weight.
+std::vector<json> standing_bodies() {
+  json of_bar = scene_of_bars({bar("b", 0, 1, 40, young, density)}, {law_on("b.left", ground(1), "contact")},
+                              {gravity({-10})});
+  const json material = elastic(young, 0, density), friction = {{"friction", 0.3}};
+  json of_cube = scene_of_blocks({block("b", {0, 0, 0}, {1, 1, 1}, {4, 4, 4}, material)},
+                                 {law_on("b.z_min", ground(3), "coulomb", friction)});
+  std::vector<json> blocks, joints{law_on("b0.z_min", ground(3), "coulomb", friction)};
+  for (int k = 0; k < 3; ++k) {
+    const std::string name = "b" + std::to_string(k);
+    blocks.push_back(block(name.c_str(), {0, 0, k / 3.0}, {1, 1, 1 / 3.0}, {2, 2, 2}, material));
+    if (k > 0)
+      joints.push_back(law_between(name + ".z_min", {{"surface", "b" + std::to_string(k - 1) + ".z_max"}},
+                                   "coulomb", friction));
+  }
+  json of_stack = scene_of_blocks(blocks, joints);
+  for (json* scene : {&of_cube, &of_stack}) (*scene)["loads"] = {gravity({0, 0, -10})};
+  return {of_bar, of_cube, of_stack};
+}
+
+// The step of the run has no part in it. At a height z bodies sink by rho g (z - z^2/2)/E.
+TEST(Prestress, TakesFewStepsWhateverTheRun) {
+  for (const json& body : standing_bodies()) {
+    std::set<std::int64_t> steps;
+    for (const double cfl : {0.999, 0.5, 0.03}) {
+      GIVEN(body["model"]["type"], body["interfaces"].size(), cfl);
+      json source = until_at_cfl(1.0, cfl, body);
+      source["prestress"] = json::object();
+      auto [scene, integrator] = simulation_of(source);
+      integrator.start();
+      const int d = scene.model->dimension();
+      for (int node = 0; node < scene.model->node_count(); ++node) {
+        const double z = scene.model->position(node)[d - 1];
+        EXPECT_NEAR(integrator.displacement()[d * node + d - 1],
+                    -density * acceleration * (z - 0.5 * z * z) / young, 1e-7);
+      }
+      steps.insert(integrator.prestressed()->steps);
+    }
+    EXPECT_EQ(steps.size(), 1U);
+    EXPECT_LE(*steps.begin(), 400);
   }
 }
 

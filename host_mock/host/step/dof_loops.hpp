@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/parallel.hpp"
-#include "model/model.hpp"
+#include "model/load.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +12,9 @@
 #include <vector>
 
 namespace ilaw::host {
+
+// Nodes that a motion drives have the velocity without damping, and no impulse of it.
+void leave_driven_undamped(const Loads& loads, Eigen::Index d, const Dofs& undamped, Dofs& v, Dofs& impulse);
 
 // Degrees of freedom that are worth a thread: whole nodes in 1D, 2D and 3D.
 constexpr std::ptrdiff_t dof_chunk = 6 * 4096;

@@ -14,15 +14,6 @@
 namespace ilaw::host {
 namespace {
 
-void leave_driven_undamped(const Loads& loads, Eigen::Index d, const Dofs& undamped, Dofs& v, Dofs& impulse) {
-  for (const auto& load : loads)
-    for (const int node : load->prescribed_nodes())
-      for (const int axis : load->prescribed_axes()) {
-        v[node * d + axis] = undamped[node * d + axis];
-        impulse[node * d + axis] = 0.0;
-      }
-}
-
 // The vector that shows the divergence best, and its name.
 struct WildMotion {
   const char* name;
@@ -47,6 +38,15 @@ struct WildMotion {
 }
 
 }  // namespace
+
+void leave_driven_undamped(const Loads& loads, Eigen::Index d, const Dofs& undamped, Dofs& v, Dofs& impulse) {
+  for (const auto& load : loads)
+    for (const int node : load->prescribed_nodes())
+      for (const int axis : load->prescribed_axes()) {
+        v[node * d + axis] = undamped[node * d + axis];
+        impulse[node * d + axis] = 0.0;
+      }
+}
 
 void Integrator::step() {
   start();
@@ -197,7 +197,7 @@ Dofs Integrator::transmitted(std::size_t load, StepTimes step, const Dofs& impul
 // Interfaces act after the loads that correct velocities: H is 1/m times what those leave of a unit impulse,
 // 1/(m (1 + a)) with damping, a = rate h/2, and 0 where a motion drives.
 void Integrator::find_contact_mass(StepTimes step) {
-  Dofs left = Dofs::Ones(u_.size());
+  Dofs left = Dofs::Constant(u_.size(), 1.0 / (1.0 + relaxation_));
   for (const std::size_t k : correcting_) left = transmitted(k, step, left);
   if (contact_inverse_mass_.size() == 0 && (left.array() == 1.0).all()) return;
   contact_inverse_mass_ = left.cwiseProduct(inverse_mass_);

@@ -111,7 +111,11 @@ class Integrator {
   StepTimes start_times() const { return {begin_ - 0.5 * dt_, begin_, begin_ + dt_}; }
   void add_start_kick();
   void relax(StepTimes times, bool from_rest);
-  double residual();
+  void settle(std::int64_t most_steps, const std::function<void(const PrestressReport&)>& told);
+  Dofs open_impulse(bool from_rest);
+  double relaxation_step() const;
+  double relative_frequency(const Dofs& change) const;
+  void set_step(double dt);
   void stop();
   void begin_anew();
   void hold_driven_before();
@@ -131,7 +135,8 @@ class Integrator {
   double dt_, begin_;
   std::optional<PrestressSetup> prestress_;
   std::optional<PrestressReport> prestressed_;
-  double first_residual_ = 0.0;  // of the prestress, as an impulse
+  double first_residual_ = 0.0;  // of the prestress
+  double relaxation_ = 0.0;      // its damping: rate times half its step; 0 in a run
   bool loads_are_steady_;
   bool transmits_steadily_;               // H is the same in all steps
   bool forces_are_steady_;                // loads are, and there are no others
