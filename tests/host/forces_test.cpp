@@ -175,6 +175,15 @@ TEST(Forces, BetweenRowsAreInTheSummary) {
 }
 
 // Positions follow a path, though damping is listed after it.
+// At rest what presses on a body goes through both sides of its interface.
+TEST(Forces, OfBothSidesAreOneColumn) {
+  json source = shipped("patch_test");
+  source["output"]["forces"] = {"press", "both"};
+  const Ran run = ran(source);
+  EXPECT_NEAR(run.last("both.F2"), -run.last("press.F2"), 1e-3);
+  EXPECT_GT(run.last("both.F2"), 1000.0);
+}
+
 TEST(Forces, OfDampingDoNotReachAGrip) {
   json scene = shaken_block();
   scene["output"]["watch"] = {"b.z_max"};

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 
 namespace ilaw::host {
 
@@ -40,9 +41,12 @@ void Forces::add_step(const Integrator& integrator) {
 void Forces::add(const ForceSetup& force, Resultant& sum, const Integrator& integrator, double duration) {
   const Dofs& u = integrator.displacement();
   if (force.interface >= 0) {
-    const Interface& interface = *scene_.interfaces[static_cast<std::size_t>(force.interface)];
-    for (const std::int32_t contact : interface.active())
-      add_at(interface.node_of(contact), interface.impulse(contact).data(), force, sum, u);
+    for (const auto& [number, sign] : {std::pair{force.interface, 1.0}, std::pair{force.other_side, -1.0}}) {
+      if (number < 0) continue;
+      const Interface& interface = *scene_.interfaces[static_cast<std::size_t>(number)];
+      for (const std::int32_t contact : interface.active())
+        add_at(interface.node_of(contact), Vector(sign * interface.impulse(contact)).data(), force, sum, u);
+    }
     return;
   }
   if (!force.springs.empty()) {

@@ -25,7 +25,7 @@ void for_each_state(const ilaw_instance_info& info, Visit visit) {
 }  // namespace
 
 bool same_columns(const nlohmann::json& one, const nlohmann::json& other) {
-  for (const char* key : {"watch", "forces", "balance", "mean_velocity"})
+  for (const char* key : {"watch", "forces", "balance"})
     if (one.value(key, nlohmann::json()) != other.value(key, nlohmann::json())) return false;
   return true;
 }
@@ -76,10 +76,8 @@ void History::write_header() {
   table_ << "time";
   for (std::size_t w = 0; w < contacts_.size(); ++w) {
     const std::string node = "n" + std::to_string(scene_.output.watch[w]) + ".";
-    for (const char* quantity : {"u", "v", "vm", "r"}) {
-      if (quantity == std::string("vm") && !scene_.output.mean_velocity) continue;
+    for (const char* quantity : {"u", "v", "r"})
       for (int c = 0; c < d; ++c) table_ << node + quantity + std::to_string(c);
-    }
     if (has_temperature(scene_.output.watch[w])) table_ << node + "T";
     for (const Contact& contact : contacts_[w]) {
       table_ << contact.prefix + "gap" << contact.prefix + "status";
@@ -114,8 +112,6 @@ void History::add_node(std::size_t watched, const Integrator& integrator, const 
   };
   add(integrator.displacement());
   add(integrator.velocity());
-  for (int c = 0; scene_.output.mean_velocity && c < d; ++c)
-    table_ << 0.5 * (integrator.velocity_before()[node + c] + integrator.velocity()[node + c]);
   add(impulse);
   if (has_temperature(scene_.output.watch[watched]))
     table_ << integrator.temperatures()->at(scene_.output.watch[watched]);

@@ -30,7 +30,7 @@ void expand_both_sides(nlohmann::json& scene) {
     interfaces[i]["area_factor"] = 0.5 * interfaces[i].value("area_factor", 1.0);
     nlohmann::json other = interfaces[i];
     other["name"] = interfaces[i].value("name", "interface" + std::to_string(i)) +
-                    "_other_side";  // a comma would be a column
+                    other_side_suffix;  // a comma would be a column
     other["nodes"] = against["surface"];
     other["against"]["surface"] = interfaces[i]["nodes"];
     interfaces.push_back(std::move(other));

@@ -19,8 +19,13 @@ using nlohmann::json;
 class Named {
  public:
   explicit Named(const Scene& scene) : scene_(scene) {
-    for (std::size_t i = 0; i < scene.interfaces.size(); ++i)
-      add(scene.interfaces[i]->name()).interface = static_cast<int>(i);
+    for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
+      const std::string& name = scene.interfaces[i]->name();
+      ForceSetup& force = add(name);
+      force.interface = static_cast<int>(i);
+      for (std::size_t k = i + 1; k < scene.interfaces.size(); ++k)
+        if (scene.interfaces[k]->name() == name + other_side_suffix) force.other_side = static_cast<int>(k);
+    }
     const json loads = scene.source.value("loads", json::array());
     for (std::size_t i = 0; i < loads.size(); ++i)
       if (loads[i].contains("name")) add_load(loads[i]["name"].get<std::string>(), i);
@@ -44,7 +49,7 @@ class Named {
 
  private:
   ForceSetup& add(const std::string& name) {
-    all_.push_back({name, -1, {}, {}, {}, {}});
+    all_.push_back({name, -1, -1, {}, {}, {}, {}});
     return all_.back();
   }
 

@@ -23,6 +23,7 @@ namespace ilaw::host {
 struct ForceSetup {
   std::string name;
   int interface = -1;              // -1: of loads or springs
+  int other_side = -1;             // the interface that both_sides has made; -1: none
   std::vector<std::size_t> loads;  // by number
   std::vector<int> nodes;          // of the loads' nodes, those that count; empty: all
   std::vector<Spring> springs;     // on their own nodes; empty: of loads
@@ -30,11 +31,10 @@ struct ForceSetup {
 };
 
 struct OutputSetup {
-  std::int64_t every = 1;      // steps per row of the history
-  std::vector<int> watch;      // nodes
-  bool balance = false;        // energies and angular momentum in the history
-  bool events = false;         // events.csv
-  bool mean_velocity = false;  // of the half steps before and after, in the history
+  std::int64_t every = 1;  // steps per row of the history
+  std::vector<int> watch;  // nodes
+  bool balance = false;    // energies and angular momentum in the history
+  bool events = false;     // events.csv
   std::vector<ForceSetup> forces;
   std::int64_t fields = 0;  // steps per VTK file; 0: none
 };

@@ -30,7 +30,8 @@ constexpr double wrong_energy = 1e-3;
 // One by one: the bytes between them mean nothing, and equal runs write equal checkpoints.
 template <class Any, class Work>
 void for_each_member(Any& tally, Work work) {
-  for (auto* count : {&tally.active, &tally.skipped, &tally.sweeps, &tally.unconverged, &tally.left_surface})
+  for (auto* count : {&tally.active, &tally.skipped, &tally.sweeps, &tally.unconverged, &tally.worst_node,
+                      &tally.left_surface})
     work(*count);
   work(tally.sweeps_max);
   for (auto* value : {&tally.coupling_residual_max, &tally.coupling_tolerance, &tally.coupling_energy,
@@ -41,7 +42,8 @@ void for_each_member(Any& tally, Work work) {
 
 }  // namespace
 
-void Accounts::add_solution(const ilaw_coupled_report& solution, double tolerance) {
+void Accounts::add_solution(const ilaw_coupled_report& solution, double tolerance, std::int64_t worst_node) {
+  if (solution.message && solution.residual >= tally_.coupling_residual_max) tally_.worst_node = worst_node;
   tally_.coupling_tolerance = tolerance;
   tally_.sweeps += solution.sweeps;
   tally_.sweeps_max = std::max(tally_.sweeps_max, static_cast<int>(solution.sweeps));
@@ -154,11 +156,12 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
   std::vector<std::string> warnings;
   if (tally_.unconverged > 0 && tally_.coupling_energy > rounding_energy * energy.scale)
     warnings.push_back(formatted(
-        "contacts that share nodes are not solved in %lld of %lld steps, the start included: residual up to %.1e after %d sweeps, "
-        "expected %g; the energy is wrong by up to %.2g, where %.2g is the largest in the run",
+        "contacts that share nodes are not solved in %lld of %lld steps, the start included: residual up to %.1e at node %lld after %d "
+        "sweeps, expected %g; the energy is wrong by up to %.2g, where %.2g is the largest in the run",
         static_cast<long long>(tally_.unconverged), static_cast<long long>(steps) + 1,
-        tally_.coupling_residual_max, static_cast<int>(CoupledStep::most_sweeps), tally_.coupling_tolerance,
-        tally_.coupling_energy, energy.scale));
+        tally_.coupling_residual_max, static_cast<long long>(tally_.worst_node),
+        static_cast<int>(CoupledStep::most_sweeps), tally_.coupling_tolerance, tally_.coupling_energy,
+        energy.scale));
   if (tally_.left_surface > 0)
     warnings.push_back(formatted(
         "%lld node(s) went over the border of a surface while they touched it: beyond it nothing holds them; a node "

@@ -22,6 +22,7 @@ struct Tally {
   std::int64_t sweeps = 0;               // over all steps
   std::int64_t unconverged = 0;          // steps that ended above the tolerance
   int sweeps_max = 0;
+  std::int64_t worst_node = -1;        // of the contact with the largest residual of such a step
   double coupling_residual_max = 0.0;  // at the end of any step
   double coupling_tolerance = 0.0;     // of that; 0: no contacts are coupled
   double coupling_energy = 0.0;        // that laws may account for wrongly, over all steps
@@ -51,7 +52,8 @@ class Accounts {
   void begin_with_stored(double energy) { energy_.begin_with_stored(energy); }
   // The work of interfaces at the start is part of that state already. speed: the largest then.
   void add_start(const Interfaces& interfaces, double speed);
-  void add_solution(const ilaw_coupled_report& solution, double tolerance);
+  // worst_node: of the contact that is farthest from its law.
+  void add_solution(const ilaw_coupled_report& solution, double tolerance, std::int64_t worst_node);
   void note_viscous_step(double step) { tally_.viscous_step = std::min(tally_.viscous_step, step); }
   // Whether contacts that do not agree change the energy by more than a small part of it.
   bool is_wrong(const Model& model, const ilaw_coupled_report& solution, const Dofs& v_before) const;

@@ -167,12 +167,18 @@ std::string CoupledStep::explain() const {
   if (!report_.message || report_.worst_group < 0) return "";
   const bool is_stuck = report_.residual > beyond_rounding && report_.island_contacts <= most_named;
   if (!report_.other_law && !is_stuck) return "";
-  const CoupledInterface& worst = interfaces_[static_cast<std::size_t>(report_.worst_group)];
   return formatted(
       "contacts that share node %d of interface '%s' have no common solution, or it is not found; the energy is "
       "wrong by %.3g: %s",
-      worst.interface().node_of(worst.group().contact(static_cast<std::size_t>(report_.worst_contact))),
-      worst.interface().name().c_str(), report_.energy_error, report_.message);
+      static_cast<int>(worst_node()),
+      interfaces_[static_cast<std::size_t>(report_.worst_group)].interface().name().c_str(),
+      report_.energy_error, report_.message);
+}
+
+std::int64_t CoupledStep::worst_node() const {
+  if (report_.worst_group < 0) return -1;
+  const CoupledInterface& worst = interfaces_[static_cast<std::size_t>(report_.worst_group)];
+  return worst.interface().node_of(worst.group().contact(static_cast<std::size_t>(report_.worst_contact)));
 }
 
 void CoupledStep::check_results(const StepView& step, const Dofs& v) const {

@@ -33,6 +33,8 @@ class CoupledStep {
   // Why contacts of the last solve have no solution, or it is not found; empty where they are many, and
   // merely not solved yet.
   std::string explain() const;
+  // Of the contact that is farthest from its law; -1: none.
+  std::int64_t worst_node() const;
   // Throws where a motion drives a node against a law that cannot give way, or a law's results are
   // impossible.
   void check_results(const StepView& step, const Dofs& v) const;

@@ -240,7 +240,7 @@ void Integrator::add_coupled_reactions(const StepView& step) {
     if (const std::string why = coupled_->explain(); !why.empty()) throw std::runtime_error(why);
   check_motion(largest_speed(v_, model_.dimension()), step.time);
   coupled_->accept(step, v_);
-  accounts_.add_solution(solution, coupled_->tolerance());
+  accounts_.add_solution(solution, coupled_->tolerance(), coupled_->worst_node());
 }
 
 void Integrator::take_heat() {
