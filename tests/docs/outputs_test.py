@@ -44,6 +44,12 @@ class Outputs(unittest.TestCase):
         with open(self.results / name) as file:
             return next(csv.reader(file))
 
+    def test_cites_what_its_laws_refer_to(self):
+        described = subprocess.run([os.environ["ILAW_PROGRAM"], "describe", "coulomb", "--json"], check=True,
+                                   capture_output=True, text=True)  # fmt: skip
+        summary = json.loads((self.results / "summary.json").read_text())
+        self.assertEqual(summary["citations"], {"coulomb": json.loads(described.stdout)["laws"][0]["references"]})
+
     def test_names_every_file(self):
         for file in self.results.iterdir():
             with self.subTest(file=file.name):
@@ -64,7 +70,7 @@ class Outputs(unittest.TestCase):
 
     def test_names_every_key_of_the_summary(self):
         summary = json.loads((self.results / "summary.json").read_text())
-        own = {"source", "floor", "major", "minor"}  # the scene's, and names of the test
+        own = {"source", "floor", "coulomb", "major", "minor"}  # the scene's, and names of the test
         of_parts = {"program", "scene", "status_counts", "energy"}  # said in words
         for key, value in summary.items():
             with self.subTest(key=key):

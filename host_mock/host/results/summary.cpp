@@ -35,6 +35,18 @@ json describe_interface(const Interface& interface, double first_contact) {
           {"bytes_per_node", interface.bytes_per_contact()}};
 }
 
+// What to cite: of each law that the scene uses, once, the references of its description.
+json cited_laws(const Scene& scene) {
+  json cited = json::object();
+  for (const auto& interface : scene.interfaces) {
+    const ilaw_plugin& plugin = interface->library().plugin();
+    for (std::uint32_t k = 0; k < plugin.law_count; ++k)
+      if (const ilaw_law& law = *plugin.laws[k]; interface->setup().law == law.id)
+        cited[law.id] = std::vector<std::string>(law.references, law.references + law.reference_count);
+  }
+  return cited;
+}
+
 json describe_energy(const EnergyReport& energy) {
   return {{"kinetic", energy.kinetic},
           {"internal", energy.internal},
@@ -98,6 +110,7 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
       {"program", {{"name", "ilaw"}, {"version", ILAW_VERSION}, {"abi", {ILAW_ABI_MAJOR, ILAW_ABI_MINOR}}}},
       {"scene", {{"file", scene.file.filename().string()}, {"title", scene.title}, {"source", scene.source}}},
       {"interfaces", interfaces},
+      {"citations", cited_laws(scene)},
       {"interrupted", record.interrupted},
       {"failure", record.failure},
       {"steps", integrator.steps()},
