@@ -6,11 +6,12 @@
     tests/mutants/run.py --area kit        those of an area (AREAS)
     tests/mutants/run.py --last 24         the last ones of mutants.json
     tests/mutants/run.py --near            by the nearest tests of each alone: survivors may be caught by others
+    tests/mutants/run.py --fresh 7         60 new ones of each area, at places drawn by this seed (fresh.py)
     tests/mutants/run.py --check           only whether each still fits the sources, exactly once
     tests/mutants/run.py --table           and writes the score of these areas into docs/reliability.md
 
 The copy is build/mutants; the environment variable ILAW_MUTANT is the number of the mutant that its programs have,
-0 for none. The nearest tests come first ("program", or "program:filter"), then the programs of the mutant's area,
+0 for none. The nearest tests come first ("program", "program:filter", or "ctest NAME"), then the programs of the mutant's area,
 the quickest first, until one fails, crashes or hangs: that has caught it. A line per mutant names the tests that ran
 and their seconds. Exit codes: 0 at least 90 % are caught in every area, 1 otherwise.
 """
@@ -29,6 +30,7 @@ import typing
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(SOURCE / "tests" / "support"))
+import fresh  # noqa: E402
 import marked_part  # noqa: E402
 
 MUTANTS = pathlib.Path(__file__).with_name("mutants.json")
@@ -58,7 +60,14 @@ AREAS = {
                                                "checkpoint_test", "resume_test"]),
     "study": Area("host_mock/instruments/study", ["converge_test", "study_test"]),
     "stress": Area("host_mock/instruments/stress", ["stress_test"]),
-    "cli": Area("host_mock/cli", ["program_test", "runs_test", "resume_test", "keys_test", "study_test", "bench_test"])}
+    "cli": Area("host_mock/cli", ["program_test", "runs_test", "resume_test", "keys_test", "study_test", "bench_test"]),
+    "bench": Area("host_mock/instruments/bench", ["bench_test"]),
+    "python": Area("api/python/ilaw", [f"ctest python.{name}" for name in
+                                       ("interface", "coupled", "fields", "search", "shapes", "bindings")]
+                   + ["ctest view.plot", "ctest view.page_data"]),
+    "lammps": Area("api/lammps", ["ctest lammps"]), "yade": Area("api/yade", ["ctest yade"]),
+    "mujoco": Area("api/mujoco", ["mujoco_test"]), "dealii": Area("api/dealii", ["ctest dealii"]),
+    "openradioss": Area("api/openradioss", ["ctest openradioss"])}
 SWITCH = """#pragma once
 #include <cstdlib>
 // Read when a program or law is loaded, so that evaluate stays pure.
@@ -75,6 +84,8 @@ def arguments():
     parser.add_argument("--area", choices=sorted(AREAS), action="append", help="mutants of this area; to be repeated")
     parser.add_argument("--last", type=int, default=0, help="this many from the end of mutants.json")
     parser.add_argument("--near", action="store_true", help="the nearest tests of each alone")
+    parser.add_argument("--fresh", type=int, metavar="SEED", help="mutants at places that this seed draws")
+    parser.add_argument("--count", type=int, default=60, help="fresh mutants of each area")
     parser.add_argument("--check", action="store_true", help="do not build: see whether mutants fit the sources")
     parser.add_argument("--table", action="store_true", help="write the score into docs/reliability.md")
     parser.add_argument("--jobs", default=os.cpu_count(), type=int, help="processes of the build and of the tests")
@@ -86,7 +97,9 @@ def area_of(file):
 
 
 def place_of(mutant, text):
-    """Where a mutant's "from" stands: "in" is the text around it, with @ in its place."""
+    """Where a mutant's "from" stands: "in" is the text around it, with @ in its place. A fresh one says "at"."""
+    if "at" in mutant:
+        return mutant["at"]
     around = mutant.get("in", "@")
     whole = around.replace("@", mutant["from"])
     count = text.count(whole)
@@ -116,6 +129,8 @@ def switched(mutant):
             raise ValueError(f"{mutant['name']}: parentheses do not balance: {text}")
         if not before.endswith(";") and has_bare_comma(text):
             raise ValueError(f"{mutant['name']}: two operands, apart by a comma: {text}")
+    if mutant["file"].endswith(".py"):
+        return f"(({after}) if __import__('os').environ.get('ILAW_MUTANT') == '{number}' else ({before}))"
     if before.endswith(";"):
         return f"{{ if (ilaw_mutant == {number}) {{ {after} }} else {{ {before} }} }}"
     return f"(ilaw_mutant == {number} ? ({after}) : ({before}))"
@@ -129,7 +144,7 @@ def with_mutants(file, mutants):
             raise ValueError(f"{one['name']}, {other['name']}: at the same place")
     for (begin, end), mutant in reversed(places):
         text = text[:begin] + switched(mutant) + text[end:]
-    return f'#include "{TREE / "mutant_switch.hpp"}"\n' + text
+    return text if file.endswith(".py") else f'#include "{TREE / "mutant_switch.hpp"}"\n' + text
 
 
 def write(file, text):
@@ -152,21 +167,42 @@ def copy_tree(by_file):
     write(TREE / "mutant_switch.hpp", SWITCH)
 
 
-def build(programs, jobs):
+def build(tests, jobs):
     """With the options of the tests, so that ccache has what no mutant changes."""
     configure = ["cmake", "-S", TREE, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DILAW_TESTS=ON",
                  "-DILAW_WERROR=ON", "-DILAW_UNITY=ON"]
     if shutil.which("ccache"):
         configure += ["-DCMAKE_C_COMPILER_LAUNCHER=ccache", "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"]
     subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", BUILD, "-j", str(jobs), "--target", *sorted(programs), "--", "--quiet", "-k", "0"],
-                   check=True)
+    recorded = [line.split("|") for line in (BUILD / "tests" / "programs.txt").read_text().splitlines()]
+    needed = {target for test in tests for target in ([test.partition(":")[0]] if not test.startswith("ctest ") else
+              [one for targets, names, _ in recorded if test[6:] in names.split() for one in targets.split()])}
+    return subprocess.run(["cmake", "--build", BUILD, "-j", str(jobs), "--target", *sorted(needed), "--", "--quiet",
+                           "-k", "0"], capture_output=True, text=True)
+
+
+def build_fresh(mutants, tests, jobs):
+    """Leaves out the mutants of lines that do not compile, such as constants and swapped arguments of two types."""
+    sources = {mutant["file"] for mutant in mutants}
+    while True:
+        copy_tree({file: with_mutants(file, [one for one in mutants if one["file"] == file]) if
+                   any(one["file"] == file for one in mutants) else (SOURCE / file).read_text() for file in sources})
+        done = build(tests, jobs)
+        wrong = {(file, int(line) - 1) for file, line in
+                 re.findall(rf"{TREE}/(\S+?):(\d+):(?:\d+:)? (?:error|  required)", done.stdout + done.stderr)}
+        left = [one for one in mutants if (one["file"], one.get("line")) not in wrong]
+        if done.returncode == 0 or len(left) == len(mutants):
+            done.returncode == 0 or sys.exit(done.stdout + done.stderr)
+            return left
+        mutants = left
 
 
 def passes(test, number, limit):
     """Whether a program's tests pass with a mutant within a limit of seconds, and how long they took."""
     program, _, chosen = test.partition(":")
     command = [BUILD / "bin" / program, "--gtest_brief=1", "--gtest_fail_fast", f"--gtest_filter={chosen or '*'}"]
+    if test.startswith("ctest "):
+        command = ["ctest", "--test-dir", BUILD, "-R", f"^{re.escape(test[6:])}$", "--no-tests=error"]
     begin = time.monotonic()
     try:
         code = subprocess.run(command, capture_output=True, timeout=limit,
@@ -219,10 +255,22 @@ def scores_on_page():
     return {area: Score(int(run), int(found), commit) for area, run, found, commit in rows if area in AREAS}
 
 
-def read_mutants():
-    mutants = json.loads(MUTANTS.read_text())
+def read_mutants(options):
+    if options.fresh is None:
+        mutants = json.loads(MUTANTS.read_text())
+    else:
+        files = subprocess.run(["git", "ls-files", "*.cpp", "*.hpp", "*.py"], cwd=SOURCE, check=True, capture_output=True,
+                               text=True).stdout.split()
+        by_area = collections.defaultdict(dict)
+        for file in files:
+            if any(file.startswith(area.folder + "/") for area in AREAS.values()):
+                by_area[area_of(file)][file] = (SOURCE / file).read_text()
+        mutants = [mutant for area in sorted(options.area or AREAS)
+                   for mutant in fresh.draw(by_area[area], options.count, f"{options.fresh} {area}")]
     for number, mutant in enumerate(mutants, 1):
         mutant.update(number=number, area=area_of(mutant["file"]))
+        if options.fresh is not None and mutant["area"] == "plugins":
+            mutant["tests"] = [f"{mutant['file'].split('/')[1]}_test"]
     return mutants
 
 
@@ -235,7 +283,7 @@ def by_file(mutants):
 
 def main():
     options = arguments()
-    everything = read_mutants()
+    everything = read_mutants(options)
     try:
         for file, mutants in by_file(everything).items():
             with_mutants(file, mutants)
@@ -250,8 +298,7 @@ def main():
               if options.only in mutant["name"] and mutant["area"] in (options.area or AREAS)]
     commit = commit_here()
     tests = sorted({test for mutant in chosen for test in tests_of(mutant, options.near, {})})
-    copy_tree({file: with_mutants(file, mutants) for file, mutants in by_file(chosen).items()})
-    build({test.partition(":")[0] for test in tests}, options.jobs)
+    chosen = build_fresh(chosen, tests, options.jobs)
     score = collections.defaultdict(list)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         sound = dict(zip(tests, pool.map(lambda test: passes(test, 0, HANGS), tests)))
