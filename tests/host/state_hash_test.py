@@ -3,7 +3,7 @@
 # another processor (tests/platforms/run.sh), and names the scenes that differ there.
 #
 # The column "differs" says where a scene has another state: "fma", on x86-64 without FMA, for which glibc has another
-# variant of log; "aarch64", where Eigen's vectors for it round otherwise.
+# variant of log; "aarch64", where the host's solid elements round otherwise.
 import csv
 import json
 import os
