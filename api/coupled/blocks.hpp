@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "knobs.hpp"
 #include "vector.hpp"
 
 #include <array>
@@ -13,7 +14,7 @@
 
 namespace ilaw::coupled {
 
-inline constexpr std::size_t max_lanes = 128;
+using knobs::max_lanes;
 // The columns of a block are max_stride doubles apart at most. Not a multiple of the cache's sets: columns at
 // distances of 1024 bytes would evict each other.
 inline constexpr std::size_t max_stride = max_lanes + 8;

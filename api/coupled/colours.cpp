@@ -48,8 +48,8 @@ void Colours::add_blocks(const std::vector<std::int32_t>& list, const Contacts& 
                          std::vector<std::int32_t>& order) {
   if (list.empty()) return;
   used_.assign(static_cast<std::size_t>(bodies.count()) + 1, 0);
-  for (std::size_t first = 0; first < list.size(); first += chunk) {
-    const std::size_t count = std::min(chunk, list.size() - first);
+  for (std::size_t first = 0; first < list.size(); first += knobs::chunk) {
+    const std::size_t count = std::min(knobs::chunk, list.size() - first);
     add_chunk(list.data() + first, count, contacts, group, bodies, blocks, order);
     for (; next_block_ < blocks.list().size(); ++next_block_) blocks.list()[next_block_].asleep = asleep;
     for (std::size_t i = first; i < first + count; ++i)

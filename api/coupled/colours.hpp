@@ -22,11 +22,7 @@ class Colours {
               std::vector<std::int32_t>& order);
 
  private:
-  // Contacts without a free color: one block each. A body with 63 contacts or more leads to it.
-  static constexpr int serial = 63;
-  // Contacts that are colored at a time: few enough that their bodies stay in the second cache while all
-  // colors are visited, enough that threads have several blocks of each color.
-  static constexpr std::size_t chunk = 16384;
+  static constexpr int serial = knobs::serial_color;
 
   void sort(const Contacts& contacts, const Bodies& bodies);
   void add_blocks(const std::vector<std::int32_t>& list, const Contacts& contacts, std::int32_t group,

@@ -114,14 +114,15 @@ bool Iterations::follow_growth(Blocks& blocks, Progress& progress) {
   for (std::size_t i = 0; i < growth.size(); ++i)
     growth[i] = scales_[i / 3] > 0.0 ? step_[i] / scales_[i / 3] : 0.0;
   const double square = progress.square;
-  for (double part = 1.0; !progress.is_over() && progress.is_known(); part *= 2.0) {
+  const auto is_far = [&] { return !progress.is_known() && runs_away(blocks, progress); };
+  for (double part = 1.0; !progress.is_over() && !is_far(); part *= 2.0) {
     for (std::size_t i = 0; i < growth.size(); ++i) correction_[i] = part * growth[i];
     move(blocks, progress, correction_);
     if (sweep_.break_bonds(blocks) || progress.is_done() ||
         !(progress.square > square / other && progress.square < other * square))
       return false;
   }
-  return !progress.is_known();
+  return is_far();
 }
 
 }  // namespace ilaw::coupled

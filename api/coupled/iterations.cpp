@@ -12,7 +12,7 @@ Progress Iterations::run(Blocks& blocks, Progress progress, bool& stalled) {
   for (;;) {
     progress.scale = std::max(scale, progress.limits.speed);
     const std::uint32_t most = progress.limits.most;
-    Outcome outcome = conjugate(blocks, progress, most <= few ? most : first_conjugate);
+    Outcome outcome = conjugate(blocks, progress, most <= few ? most : knobs::first_conjugate);
     const bool away = progress.code >= 0 && runs_away(blocks, progress);
     if (away && most <= few)
       outcome = begin_again(blocks, progress);
@@ -85,7 +85,7 @@ Outcome Iterations::conjugate(Blocks& blocks, Progress& progress, std::uint32_t 
       step = {true, beta > fast && beta <= 1.0 ? beta : 0.0};
       square_before = progress.square;
       extrapolate_bodies(step.beta);
-      if (k % wake_interval == 0) sweep_.wake(blocks);
+      if (k % knobs::wake_interval == 0) sweep_.wake(blocks);
     } else {
       direction_.assign(static_cast<std::size_t>(problem_.bodies.count()), {});
       keep_start();
@@ -107,8 +107,7 @@ void Iterations::extrapolate_bodies(double beta) {
     direction = {beta * direction.velocity + v, beta * direction.spin + w};
     start_[b] = {now[b].velocity, now[b].spin};
   };
-  constexpr std::size_t few_bodies = 10000;
-  sweep_.share(direction_.size(), few_bodies, [&](std::size_t first, std::size_t end) {
+  sweep_.share(direction_.size(), knobs::few_bodies, [&](std::size_t first, std::size_t end) {
     for (std::size_t b = first; b < end; ++b) extrapolate(b);
   });
 }
@@ -228,7 +227,7 @@ Outcome Iterations::solve_island(Blocks& blocks, Progress& progress) {
 
 Outcome Iterations::take_turns(Blocks& blocks, Progress& progress, Best& best) {
   constexpr std::uint32_t most_futile = 2;  // turns in a row that do not lower the error by a tenth
-  std::uint32_t gauss_seidel_part = first_part, splitting_part = first_part;
+  std::uint32_t gauss_seidel_part = knobs::first_part, splitting_part = knobs::first_part;
   splitting_.reset();
   const auto settles = [&](Outcome outcome) {
     if (outcome != Outcome::solved) return false;

@@ -34,8 +34,8 @@ class Iterations {
  private:
   // The same of one Newton step: laws that contradict each other have no finite solution.
   static constexpr double max_newton_growth = 0x1p14;
-  // Iterations of the conjugate method before others; with at most `few` iterations in all there is no other.
-  static constexpr std::uint32_t few = 100, first_conjugate = 30;
+  // With at most so many iterations in all there is no method but the conjugate one.
+  static constexpr std::uint32_t few = 100;
   // With few iterations, but not fewer than this, islands of up to so many contacts whose residual is above
   // this take up to so many Newton steps. Closer ones keep what they have: among the solutions of redundant
   // contacts iterations find one near that of the step before.
@@ -44,12 +44,8 @@ class Iterations {
   static constexpr double far_off = 1e-3;
   // Times the momentum of the bodies: larger impulses press contacts against each other.
   static constexpr double near = 16.0;
-  // Iterations between looks for sleeping contacts that come within reach.
-  static constexpr std::uint32_t wake_interval = 4;
   // Factor of the change with which impulses are better than the best, and are copied.
   static constexpr double much_less = 0.5;
-  // Iterations of a method before another one gets its turn.
-  static constexpr std::uint32_t first_part = 100;
 
   // The impulses with the least error, by contact.
   struct Best {

@@ -130,8 +130,7 @@ const char* Solver::make_blocks(ilaw_coupled_report& report) {
   blocks_.allocate();
   problem_.speeds.resize(order_.size());
   std::atomic<bool> is_refused = false;
-  constexpr std::size_t few = 100;
-  sweep_.share(blocks_.list().size(), few, [&](std::size_t first, std::size_t end) {
+  sweep_.share(blocks_.list().size(), knobs::few_blocks, [&](std::size_t first, std::size_t end) {
     for (std::size_t b = first; b < end; ++b)
       if (!fill(blocks_.list()[b])) is_refused = true;
   });

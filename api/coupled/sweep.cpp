@@ -43,7 +43,6 @@ void with_form(const Block& block, Visit&& visit) {
 
 // With every four lanes a part of the next block, whose columns follow those of this one, where all blocks
 // exceed the second cache. A block has more columns than the processor follows by itself.
-constexpr std::size_t cached_bytes = std::size_t{1} << 20;
 void prefetch_next(const Block& block, std::size_t lane) {
   const auto columns = static_cast<std::size_t>(block.layout->columns);
   const double* next = block.values + (block.stride + lane) * columns;
@@ -179,7 +178,7 @@ bool Sweep::is_served(Block& block, ThreadData& own, const Work& work) const {
 template <class Work>
 Change Sweep::for_blocks(Blocks& blocks, const Work& work) {
   std::vector<Block>& list = blocks.list();
-  prefetches_ = blocks.bytes() > cached_bytes;
+  prefetches_ = blocks.bytes() > knobs::cached_bytes;
   for (ThreadData& own : data_) {
     own.change = {};
     own.failed = nullptr;
