@@ -49,6 +49,7 @@ class Contacts {
   void add_outputs(std::vector<const double*>& outputs) const;
   bool is_in_reach(const Block& block, std::size_t lane, const Vector& velocity) const;
   // Whether bonds hold until a solution is judged, and those that broke at one stay broken.
+  bool can_adhere() const { return (info_.capabilities & ILAW_CAN_ADHERE) != 0; }
   bool holds_bonds() const {
     return holds_bonds_ && (info_.capabilities & ILAW_CAN_HOLD_BONDS) && theirs_.flags == 0;
   }

@@ -9,11 +9,19 @@
 
 namespace ilaw::coupled {
 
-// Whether impulses are far larger than the momentum of the bodies: redundant contacts that press against each
-// other. Any multiple of such a pressure may solve the equations, and accelerated iterates run along it.
+// Whether contacts press against each other by far more than the momentum of the bodies: any multiple of such
+// a pressure may solve the equations, and accelerated iterates run along it. Bonds prescribe forces of their
+// own, so that impulses beside them may be as large.
 bool Iterations::runs_away(const Blocks& blocks, const Progress& progress) {
-  constexpr double least_weight = 1e-3;
   if (progress.size <= near * progress.scale) return false;
+  bool adheres = false;
+  for (const Block& block : blocks.list())
+    adheres = adheres || (!block.asleep && problem_.group(block).can_adhere());
+  return !ranks_.any_rank(adheres) && exceeds_momentum(blocks, progress);
+}
+
+bool Iterations::exceeds_momentum(const Blocks& blocks, const Progress& progress) {
+  constexpr double least_weight = 1e-3;
   double most = 0.0, mass = 0.0;
   for (const Block& block : blocks.list()) {
     if (block.asleep) continue;
@@ -56,8 +64,11 @@ bool Iterations::grow_without_end(Blocks& blocks, Progress& progress) {
     for (std::size_t i = 0; i < before.size(); ++i) off += (step_[i] - before[i]) * (step_[i] - before[i]);
     for (std::size_t b = 0; b < start_.size(); ++b)
       moved = std::max(moved, largest(problem_.bodies.now()[b].velocity - start_[b].velocity));
-    if (!before.empty() && off <= steady * progress.square && moved <= still * progress.change)
-      return grows_along_normals(blocks) && follow_growth(blocks, progress);
+    if (!before.empty() && off <= steady * progress.square && moved <= still * progress.change) {
+      const bool proves =
+          std::all_of(blocks.list().begin(), blocks.list().end(), [&](const Block& b) { return stops(b); });
+      return grows_along_normals(blocks) && follow_growth(blocks, progress) && proves;
+    }
     before = step_;
   }
   return false;
@@ -73,7 +84,7 @@ bool Iterations::grows_along_normals(const Blocks& blocks) const {
       if (block.status[q] != ILAW_BONDED && largest(across) > part * size) return false;
       if (dot(by, block.at(block.layout->impulse, q)) < 0.0) return false;
     }
-  return std::all_of(blocks.list().begin(), blocks.list().end(), [&](const Block& b) { return stops(b); });
+  return true;
 }
 
 // Whether bonds stop their contacts, and would as well at the opposite velocity. One whose impulse must do no
@@ -114,7 +125,7 @@ bool Iterations::follow_growth(Blocks& blocks, Progress& progress) {
   for (std::size_t i = 0; i < growth.size(); ++i)
     growth[i] = scales_[i / 3] > 0.0 ? step_[i] / scales_[i / 3] : 0.0;
   const double square = progress.square;
-  const auto is_far = [&] { return !progress.is_known() && runs_away(blocks, progress); };
+  const auto is_far = [&] { return !progress.is_known() && exceeds_momentum(blocks, progress); };
   for (double part = 1.0; !progress.is_over() && !is_far(); part *= 2.0) {
     for (std::size_t i = 0; i < growth.size(); ++i) correction_[i] = part * growth[i];
     move(blocks, progress, correction_);

@@ -65,6 +65,7 @@ class Iterations {
   Outcome anderson(Blocks& blocks, Progress& progress, std::uint32_t most, Best& best);
   Outcome newton(Blocks& blocks, Progress& progress);
   bool runs_away(const Blocks& blocks, const Progress& progress);
+  bool exceeds_momentum(const Blocks& blocks, const Progress& progress);
   bool grow_without_end(Blocks& blocks, Progress& progress);
   bool grows_along_normals(const Blocks& blocks) const;
   bool stops(const Block& block) const;
