@@ -85,7 +85,8 @@ struct conductance {
   V conducted(V flow) const {
     const V c = 1.0 / heat_capacity + 1.0 / counterpart_heat_capacity;
     const V exchanged = -exp_minus_one(-(flow * c)) / select(c > 0.0, c, 1.0);
-    return (counterpart_temperature - temperature) * select(c > 0.0, exchanged, flow);
+    const V per_kelvin = select(c > 0.0, exchanged, flow);
+    return zero_unless(per_kelvin > 0.0, (counterpart_temperature - temperature) * per_kelvin);
   }
 };
 
