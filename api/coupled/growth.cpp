@@ -65,9 +65,10 @@ bool Iterations::grow_without_end(Blocks& blocks, Progress& progress) {
     for (std::size_t b = 0; b < start_.size(); ++b)
       moved = std::max(moved, largest(problem_.bodies.now()[b].velocity - start_[b].velocity));
     if (!before.empty() && off <= steady * progress.square && moved <= still * progress.change) {
+      if (!grows_along_normals(blocks)) return false;
       const bool proves =
           std::all_of(blocks.list().begin(), blocks.list().end(), [&](const Block& b) { return stops(b); });
-      return grows_along_normals(blocks) && follow_growth(blocks, progress) && proves;
+      return follow_growth(blocks, progress) && proves;
     }
     before = step_;
   }
