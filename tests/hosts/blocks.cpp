@@ -50,7 +50,7 @@ ilaw::interface create_interface(const char* library_name) {
   friction.number = 0.3;
   activation.name = "activation";
   activation.kind = ILAW_KIND_VALUE_TEXT;
-  activation.text = "moreau";
+  activation.text = "predictive";
   const std::array<const ilaw_argument*, 2> arguments{&friction, &activation};
   ilaw_setup setup{};
   setup.struct_size = sizeof setup;
@@ -79,7 +79,7 @@ ilaw_batch describe_batch(const ilaw_instance_info& info, std::vector<double>& s
   batch.struct_size = sizeof batch;
   batch.node_count = floor_nodes.size();
   batch.index = floor_nodes.data();  // the arrays below are the solver's own, over all its nodes
-  batch.velocity_step = batch.position_step = h;
+  batch.position_step = h;
   batch.v_free = input_of(v);
   batch.delassus = ilaw::input(inverse_mass.data(), 1, 0);
   batch.gap = ilaw::input(u[2].data(), 1, 0);  // height over the floor: a component of u, in place
@@ -94,20 +94,21 @@ ilaw_batch describe_batch(const ilaw_instance_info& info, std::vector<double>& s
   return batch;
 }
 
-void step(const ilaw::interface& interface, ilaw_batch& batch, int n) {
-  for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < count; ++i) u[c][i] += h * v[c][i];
+// A kick by all forces, then the impulse of the law. impulse and energy stay 0 outside floor_nodes.
+void kick_with_law(const ilaw::interface& interface, ilaw_batch& batch, double time, double duration) {
   sum_forces();
   v_previous = v;
-  kick(h);  // v is v_free now
+  kick(duration);  // v is v_free now
 
   ilaw_report report{};
   report.struct_size = sizeof report;
-  batch.time = (n + 1) * h;
+  batch.time = time;
+  batch.velocity_step = duration;
   if (interface.evaluate(batch, &report) != ILAW_OK) throw std::runtime_error(report.reason);
 
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < count; ++i) v[c][i] += inverse_mass[i] * impulse[c][i];
+  for (std::size_t i = 0; i < count; ++i) friction_work[i] += energy[ILAW_ENERGY_FRICTION][i];
 }
 
 void run(const char* library_name) {
@@ -118,11 +119,11 @@ void run(const char* library_name) {
 
   ilaw_batch batch = describe_batch(info, state);
   if (interface.initialise(batch) != ILAW_OK) throw std::runtime_error("initialise refused");
-  sum_forces();
-  kick(0.5 * h);  // V_1/2
+  kick_with_law(interface, batch, 0.0, 0.5 * h);  // V_1/2
   for (int n = 0; n < steps; ++n) {
-    step(interface, batch, n);
-    for (std::size_t i = 0; i < count; ++i) friction_work[i] += energy[ILAW_ENERGY_FRICTION][i];
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < count; ++i) u[c][i] += h * v[c][i];
+    kick_with_law(interface, batch, (n + 1) * h, h);
   }
   for (std::size_t i = 0; i < count; ++i)
     std::printf("%2zu %24.16E %24.16E %24.16E %24.16E %2d\n", i, u[0][i], u[1][i], u[2][i], friction_work[i],

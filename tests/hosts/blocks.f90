@@ -41,11 +41,10 @@ program blocks
   call describe_batch()
   if (ilaw_interface_initialise(interface, batch, report) /= ILAW_OK) &
     call fail('initialise', ilaw_text(report%reason))
-  call sum_forces()
-  call kick(0.5d0*h) ! V_1/2
+  call kick_with_law(0._c_double, 0.5d0*h) ! V_1/2
   do n = 0, steps - 1
-    call step(n)
-    friction_work = friction_work + energy(1 + ILAW_ENERGY_FRICTION, :)
+    u = u + h*v
+    call kick_with_law((n + 1)*h, h)
   end do
   do i = 1, blocks_count
     write (*, '(i2,4(1x,es24.16e2),1x,i2)') i - 1, u(:, i), friction_work(i), status(i)
@@ -68,7 +67,7 @@ contains
     setup%delassus_form = ILAW_DELASSUS_SCALAR
     setup%frame = ILAW_FRAME_GLOBAL
     call values%set('friction', 0.3_c_double)
-    call values%set('activation', 'moreau')
+    call values%set('activation', 'predictive')
     if (ilaw_create(library, '', setup, values, interface, message) /= ILAW_OK) call fail('create', message)
     call ilaw_library_close(library) ! the interface keeps it loaded
   end subroutine
@@ -78,7 +77,6 @@ contains
     if (iand(ior(info%inputs, info%balance_inputs), not(given)) /= 0) &
       call fail('law', 'reads an input that this code does not have')
     call ilaw_use_nodes(batch, floor_nodes) ! the arrays below are the solver's own, over all its nodes
-    batch%velocity_step = h
     batch%position_step = h
     batch%v_free = ilaw_input_of(v)
     batch%delassus = ilaw_input_of(inverse_mass)
@@ -93,18 +91,20 @@ contains
     batch%status_stride = 1
   end subroutine
 
-  subroutine step(n)
-    integer, intent(in) :: n
-    u = u + h*v
+  ! A kick by all forces, then the impulse of the law. impulse and energy stay 0 outside floor_nodes.
+  subroutine kick_with_law(time, duration)
+    real(c_double), intent(in) :: time, duration
     call sum_forces()
     v_previous = v
-    call kick(h) ! v is v_free now
+    call kick(duration) ! v is v_free now
 
-    batch%time = (n + 1)*h
+    batch%time = time
+    batch%velocity_step = duration
     if (ilaw_interface_evaluate(interface, batch, report) /= ILAW_OK) &
       call fail('evaluate', ilaw_text(report%reason))
 
     v = v + spread(inverse_mass, 1, 3)*impulse
+    friction_work = friction_work + energy(1 + ILAW_ENERGY_FRICTION, :)
   end subroutine
 
   subroutine sum_forces()
