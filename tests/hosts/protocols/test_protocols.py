@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The protocols of ilaw.protocols in hosts of several languages, and the table of docs/hosts/promise.md."""
+import dataclasses
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ilaw import protocols
+
+ROOT, BUILD = Path(os.environ["ILAW_SOURCE"]), Path(os.environ["ILAW_BUILD"])
+PAGE = ROOT / "docs/hosts/promise.md"
+CASES = list(protocols.PROTOCOLS.values())
+
+
+def by_program(program, protocol, folder):
+    file = folder / f"{protocol.name}.txt"
+    file.write_text(protocol.text())
+    done = subprocess.run([program, file], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return np.array([float(word) for word in done.stdout.split()])
+
+
+def scene_of(protocol):
+    p = protocol
+    point = {"mass": p.mass, "position": p.position, "velocity": p.velocity, "stiffness": p.stiffness, "area": p.area}
+    plane = {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "velocity": p.wall}
+    loads = [{"type": "force", "nodes": [0], "direction": p.force, "history": [[0, 1], [1e3, 1]]}] if any(p.force) else []
+    return {
+        "model": {"type": "points", "dimension": 3, "points": [point]}, "time": {"dt": p.step, "end": p.steps * p.step},
+        "interfaces": [{"law": p.law, "parameters": p.parameters, "nodes": "all", "obstacle": plane}], "loads": loads,
+        "output": {"watch": [0]},
+    }  # fmt: skip
+
+
+def by_scene(program, options, protocol, folder):
+    """A host that reads scenes: its history has the impulse of each step but the start's, which the momentum gives."""
+    file, out = folder / "scene.json", folder / "out"
+    file.write_text(json.dumps(scene_of(protocol)))
+    if protocol.restart:
+        pytest.skip("see the tests of resumed runs")
+    done = subprocess.run([program, *(word.format(scene=file, out=out) for word in options)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    rows = np.genfromtxt(out / "history.csv", delimiter=",", names=True)
+    last = [[rows[f"n0{q}{c}"][-1] for c in range(3)] for q in "uv"]
+    summed = [rows[f"n0r{c}"].sum() for c in range(3)]
+    u1, p = np.array([rows[f"n0u{c}"][0] for c in range(3)]), protocol
+    first = p.mass * (u1 / p.step - p.velocity) - 0.5 * p.step * np.array(p.force)
+    return np.concatenate([*last, summed + first])
+
+
+def ilaw_run(protocol, folder):
+    return by_scene(BUILD / "bin/ilaw", ["run", "{scene}", "--out", "{out}"], protocol, folder)
+
+
+def minimal(protocol, folder):
+    return by_scene(BUILD / "bin/ilaw-minimal", ["{scene}", "{out}"], protocol, folder)
+
+
+def in_c(protocol, folder):
+    return by_program(BUILD / "bin/protocol_c", protocol, folder)
+
+
+def in_fortran(protocol, folder):
+    program = BUILD / "bin/protocol_fortran"
+    if not program.exists():
+        pytest.skip("no Fortran compiler")
+    return by_program(program, protocol, folder)
+
+
+def in_python(protocol, folder):
+    return protocols.Host(protocol).run()
+
+
+def openradioss(protocol, folder):
+    """The cycle of OpenRadioss, where a contact is solved with all others."""
+    import ilaw_openradioss
+    from engine import Engine
+
+    p = protocol
+    if p.restart:
+        pytest.skip("see test_openradioss.py")
+
+    def force(time, x):
+        return np.array(p.force) - np.array(p.stiffness) * (x - p.position)
+
+    engine = Engine([p.position], np.array(p.velocity), p.mass, force)
+    given = dict(law=p.law, nodes=[1], plane=([0, 0, 0], [0, 0, 1]), velocity=p.wall, area=p.area, held="", **p.parameters)
+    run, sums = ilaw_openradioss.Run(engine.context, 0.0, 0.0, [given], folder=folder), []
+
+    def sync(context, time, step):
+        if step > 0.0:
+            run.step(time, step)
+            sums.append(run.groups[0].impulse[0].copy())
+
+    moved = None
+    for _ in engine.run(sync, [p.step] * (p.steps + 1)):
+        moved = engine.arrays["D"][0].copy() if len(sums) == p.steps else moved
+    return np.concatenate([moved, engine.arrays["V"][0], np.sum(sums, axis=0)])
+
+
+HOSTS = {"ilaw run": ilaw_run, "minimal, C++": minimal, "C": in_c, "Fortran": in_fortran, "Python": in_python,
+         "OpenRadioss (its cycle)": openradioss}  # fmt: skip
+
+
+@pytest.mark.parametrize("protocol", CASES, ids=lambda case: case.name)
+@pytest.mark.parametrize("host", HOSTS)
+def test_a_host_keeps_the_promise(host, protocol, tmp_path):
+    assert protocols.judge(protocol, HOSTS[host](protocol, tmp_path)) == []
+
+
+def entry(host, protocol, folder):
+    try:
+        found, reference = HOSTS[host](protocol, folder), protocols.Host(protocol).run()
+    except pytest.skip.Exception:
+        return "-"
+    apart = protocols.difference(found, reference)
+    return "same bits" if np.array_equal(found, reference) else "1e-12" if apart > 1e-14 else "1e-14"
+
+
+def table(folder):
+    lines = ["| host | " + " | ".join(case.name.replace("_", " ") for case in CASES) + " |", "| --- |" + " --- |" * len(CASES)]
+    return lines + [f"| {host} | " + " | ".join(entry(host, case, folder) for case in CASES) + " |" for host in HOSTS]
+
+
+def test_the_page_has_this_table(tmp_path):
+    found = "\n".join(table(tmp_path))
+    if os.environ.get("ILAW_TEST_ACCEPT"):
+        text = re.sub(r"\| host \|.*?\n\n", lambda _: found + "\n\n", PAGE.read_text(), count=1, flags=re.S)
+        PAGE.write_text(text)
+    assert found in PAGE.read_text()
+
+
+@pytest.mark.parametrize("protocol", CASES, ids=lambda case: case.name)
+def test_three_steps_keep_the_answer(protocol):
+    """Those whose answer does not depend on the step to more than its tolerance."""
+    for factor in (10 / 11, 10 / 13):
+        other = dataclasses.replace(protocol, step=protocol.step * factor, steps=round(protocol.steps / factor))
+        found = protocols.Host(other).run()
+        for name in ("v.x", "v.z", "u.x"):
+            if name in protocol.exact and protocol.name != "stick_slip":
+                value, tolerance = protocol.exact[name]
+                assert found[protocols.NAMES.index(name)] == pytest.approx(value, abs=max(tolerance, 1e-11 * abs(value)))
+
+
+def judged(folder, changes):
+    """The judge's exit code and output for a host that is wrong in one respect."""
+    assert protocols.main(["write", str(folder)]) == 0
+    for case in CASES:
+        numbers = protocols.Host(case).run()
+        changes(case, numbers)
+        (folder / f"{case.name}.out").write_text(" ".join(f"{number:.17g}" for number in numbers))
+    done = subprocess.run([sys.executable, "-m", "ilaw.protocols", "judge", folder], capture_output=True, text=True)
+    return done.returncode, done.stdout
+
+
+def test_a_right_host_is_accepted(tmp_path):
+    code, text = judged(tmp_path, lambda case, numbers: None)
+    assert code == 0 and text.count("the same bits") == len(CASES)
+
+
+def test_a_host_that_sinks_at_the_start_is_refused(tmp_path):
+    def sinks(case, numbers):
+        if case.name == "slide":
+            numbers[2] -= 5e-6
+
+    code, text = judged(tmp_path, sinks)
+    assert code == 1 and "slide: u.z: found -5" in text and text.count("the same bits") == len(CASES) - 1
+
+
+def test_a_missing_result_is_named(tmp_path):
+    assert protocols.judge_folder(tmp_path) == 1
