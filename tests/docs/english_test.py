@@ -133,6 +133,19 @@ class English(unittest.TestCase):
             with self.subTest(page=page.name):
                 self.assertEqual(re.findall(r"^## (.*)", page.read_text(), re.M), LAW_SECTIONS)
 
+    def test_bibliography_names_pages_that_cite(self):
+        bibliography = ROOT / "docs/bibliography.md"
+        links = 0
+        for row in re.findall(r"^\| [^|]+ \| [0-9]{4} \|.*", bibliography.read_text(), re.M):
+            authors, year, _, _, pages_that_cite, _ = [cell.strip() for cell in row[1:-1].split("|")]
+            citation = re.compile(re.escape(re.split(r",| and | \*", authors)[0]) + r"\b[^;|]{0,70}?" + year)
+            for page in re.findall(r"\]\(([^)]*)\)", pages_that_cite):
+                links += 1
+                with self.subTest(work=f"{authors} {year}", page=page):
+                    text = (bibliography.parent / page).read_text()
+                    self.assertRegex(re.sub(r"\s+", " ", text), citation)
+        self.assertGreater(links, 100)
+
     def test_finds_long_and_vague_sentences(self):
         long = "Word" + 40 * " word" + "."
         self.assertEqual(len(list(offences(long))), 1)
