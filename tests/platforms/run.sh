@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # Laws, loader, coupled solver and host without VTK for another processor: compiles them with Debian's cross compiler,
 # runs shipped scenes under qemu-user, and compares their states with those of tests/host/state_hashes.csv.
-#   tests/platforms/run.sh aarch64 [SCENE.json...]
-# On Debian it needs g++-aarch64-linux-gnu, qemu-user and zlib1g-dev:arm64.
+#   tests/platforms/run.sh aarch64|ppc64le [SCENE.json...]
+# On Debian it needs qemu-user, and g++-aarch64-linux-gnu with zlib1g-dev:arm64, or g++-powerpc64le-linux-gnu with
+# zlib1g-dev:ppc64el.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER:-}
 processor=$1
 shift
-triplet=$processor-linux-gnu
+triplet=${processor/#ppc64le/powerpc64le}-linux-gnu
 build=build/$processor
 scenes=("$@")
 [ $# -gt 0 ] || mapfile -t scenes < <(git ls-files 'host_mock/scenes/*.json' 'plugins/*/*.json')
