@@ -77,8 +77,9 @@ typedef struct ilaw_facets_pairs_of {
   uint32_t reserved; /* 0 */
   int64_t count;
   const int32_t* points; /* by number from 0 on; null: 0 to count - 1 */
-  ilaw_input rim;  /* 1, optional: how far a facet goes on beyond the border of the surface. A border is an
-                      edge  (2D: a corner) of one facet alone. Node stride 0: the same for all */
+  ilaw_input rim;  /* 1, optional: how far a facet goes on beyond the border of the surface, and how deep
+                      behind it a point there still belongs to it. A border is an edge (2D: a corner) of one
+                      facet alone. Node stride 0: the same for all */
   int32_t* facet;  /* number of the facet from 0 on; -1: none, where positions are not finite */
   int32_t* place;  /* ILAW_PLACE_* */
   ilaw_output gap; /* 1: distance from the facet along its normal, negative behind it; at a point that is over

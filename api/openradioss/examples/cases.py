@@ -1,6 +1,6 @@
 """Writes the decks of four cases with closed forms, and judges what came out.
 
-    python3 cases.py write CASE FOLDER     slide, impact, two_bars or peel
+    python3 cases.py write CASE FOLDER     one of slide, impact, two_bars, peel, drop, bond, continued
     python3 cases.py judge CASE FOLDER     after a run: reads history.csv there
 
 run.sh does both around an OpenRadioss. SPDX-License-Identifier: BSD-3-Clause
@@ -15,6 +15,7 @@ FRICTION, GRAVITY = 0.3, 10.0
 LENGTH, SIDE, CELLS, DENSITY, YOUNG, SPEED = 1.0, 0.02, 50, 8000.0, 2e11, 1.0
 FORCE = SIDE**2 * SPEED * (DENSITY * YOUNG) ** 0.5  # of the wave of a bar on a wall: 16,000 N
 TOUGHNESS = 5.0
+MASS, HEIGHT, BOND, STEP, FLOOR = 2.0, 0.5, 0.1, 1e-4, "plane 0 0 0  0 0 1"  # of one node
 WALL = dict(plane=([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]))
 
 
@@ -62,9 +63,55 @@ def peel(folder):
     deck.write(folder, [bond], stop=2e-3)
 
 
+def drop(folder):
+    """A node falls from 0.5 m and bounces up to a quarter of it, by the window of the user library."""
+    deck = Deck("DROP")
+    deck.free_node(MASS, HEIGHT, 0.0, GRAVITY)
+    deck.write_window(folder, ["law contact", "restitution 0.5", FLOOR, "nodes 1"], [2.0], STEP)
+
+
+def bond(folder, stops=(0.1,)):
+    """A node flies off and tears its bond, by the window: its kinetic energy falls by toughness times area."""
+    deck = Deck("BOND")
+    deck.free_node(MASS, 0.0, 2.0)
+    lines = ["law cohesive", "strength 10", f"toughness {BOND}", "area 1", FLOOR, "nodes 1"]
+    deck.write_window(folder, lines, stops, STEP)
+
+
+def continued(folder):
+    """The same in three runs, from one restart file of the engine to the next, amid the damage."""
+    bond(folder, (0.004, 0.007, 0.1))
+
+
 def history(folder):
     with open(Path(folder, "history.csv")) as table:
         return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(table)]
+
+
+def trace(folder):
+    """Lines of the window's node, of which the first of a continued run is the last of the run before."""
+    return list(dict.fromkeys(Path(folder, "history.csv").read_text().splitlines()))
+
+
+def judge_window(case, folder):
+    lines = trace(folder)
+    rows = [[float(value) for value in line.split(",")] for line in lines]
+    if case == "drop":
+        touch = next(k for k, (_, _, v) in enumerate(rows) if v > 0.0)
+        impact = (2 * GRAVITY * HEIGHT) ** 0.5
+        return [
+            ("touches [s]", rows[touch][0], impact / GRAVITY, 0.01),
+            ("leaves with [m/s]", rows[touch][2], impact / 2, 0.01),
+            ("rises to [m]", max(z for t, z, _ in rows[touch:] if t < 0.6), HEIGHT / 4, 0.01),
+            ("deepest [m]", min(z for _, z, _ in rows), 0.0, 1e-9),
+            ("rests, speed [m/s]", rows[-1][2], 0.0, 1e-12),
+        ]
+    checks = [("leaves with [m/s]", rows[-1][2], (4.0 - 2 * BOND / MASS) ** 0.5, 1e-3)]
+    if case == "continued":
+        whole = trace(Path(folder, "../bond"))
+        different = sum(a != b for a, b in zip(lines, whole)) + abs(len(lines) - len(whole))
+        checks.append(("cycles with other bits than in one run", different, 0.0, 0.0))
+    return checks
 
 
 def column(rows, end):
@@ -73,6 +120,8 @@ def column(rows, end):
 
 def judge(case, folder):
     """[(what, found, exact, allowed relative error)]"""
+    if case in WINDOWS:
+        return judge_window(case, folder)
     rows = history(folder)
     if case == "slide":
         weight = 1000.0 * 0.4 * 0.2 * 0.2 * GRAVITY
@@ -91,7 +140,8 @@ def judge(case, folder):
     return [("force [N]", sum(plateau) / len(plateau), exact, 0.005), ("deepest [m]", deepest, 0.0, 1e-9)]
 
 
-CASES = {"slide": slide, "impact": impact, "two_bars": two_bars, "peel": peel}
+WINDOWS = {"drop": drop, "bond": bond, "continued": continued}  # of the user library
+CASES = {"slide": slide, "impact": impact, "two_bars": two_bars, "peel": peel, **WINDOWS}
 
 if __name__ == "__main__":
     if len(sys.argv) != 4 or sys.argv[1] not in ("write", "judge") or sys.argv[2] not in CASES:

@@ -10,6 +10,18 @@ def sync(context):
     ilaw_openradioss.sync(context, TIME, DT, ilaw_contacts.contacts, history="history.csv")
 """
 
+WINDOW = """\
+def sync(context):
+    import ctypes, ilaw_openradioss_window
+    ilaw_openradioss_window.sync(context, TIME, DT)
+    def array(name, kind):
+        return (kind * context[name + "_size"]).from_address(context[name + "_ptr"])
+    z = 3 * array("ITAB", ctypes.c_int)[:].index(1) + 2
+    x, v = (array(name, ctypes.c_double)[z] for name in "XV")
+    with open("history.csv", "a") as table:
+        table.write(f"{TIME!r},{x!r},{v!r}\\n")
+"""
+
 
 def number(x):
     return f"{x:20.12g}"
@@ -60,16 +72,36 @@ class Deck:
         k = self.next()
         self.add(f"/INIVEL/TRA/{k}", f"velocity {k}", "".join(map(number, v)) + whole(group) + whole(0))
 
-    def write(self, folder, contacts, stop, scale=0.9):
-        """scale: of the engine's stable step, which stays that of the solids."""
+    def free_node(self, mass, z, speed, gravity=0.0):
+        """The first node of the model, beside a soft solid that OpenRadioss asks for."""
+        self.add("/NODE", whole(1) + number(0) + number(0) + number(z))
+        self.body(*block((1, 1, 1), (1.0, 1.0, 1.0), (10.0, 0.0, 10.0), 11), 1000.0, 1.0, 0.0)
+        group = self.group([1])
+        self.add(f"/ADMAS/0/{self.next()}", "mass", number(mass) + whole(group))
+        if speed:
+            self.velocity(group, (0.0, 0.0, speed))
+        if gravity:
+            self.gravity(group, -gravity)
+
+    def write_files(self, folder, python, stops, step):
+        """An engine file for each part of a run, which ends at `stops`."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        starter = [*self.lines, "/FUNCT_PYTHON/1", *PYTHON.splitlines(), "/END", ""]
+        starter = [*self.lines, "/FUNCT_PYTHON/1", *python.splitlines(), "/END", ""]
         Path(folder, f"{self.name}_0000.rad").write_text("\n".join(starter))
-        engine = [f"/RUN/{self.name}/1", number(stop), "/VERS/2022", "/PRINT/-1", "/TFILE/4", number(stop / 1000)]
-        engine += ["/DT", number(scale) + number(0), ""]
-        Path(folder, f"{self.name}_0001.rad").write_text("\n".join(engine))
+        for k, stop in enumerate(stops, 1):
+            engine = [f"/RUN/{self.name}/{k}", number(stop), "/VERS/2022", "/PRINT/-1", "/TFILE/4", number(stop / 1000)]
+            Path(folder, f"{self.name}_{k:04d}.rad").write_text("\n".join([*engine, *step, ""]))
+
+    def write(self, folder, contacts, stop, scale=0.9):
+        """scale: of the engine's stable step, which stays that of the solids."""
+        self.write_files(folder, PYTHON, [stop], ["/DT", number(scale) + number(0)])
         Path(folder, "ilaw_contacts.py").write_text(f"contacts = {contacts!r}\n")
+
+    def write_window(self, folder, lines, stops, step):
+        """Of the user library, at steps of this length."""
+        self.add("/USERWI/1", *lines)
+        self.write_files(folder, WINDOW, stops, ["/DTIX", 2 * number(step)])
 
 
 def block(cells, size, corner, first=1):

@@ -110,7 +110,10 @@ class Facets(NotCopied):
         return np.sort(np.ctypeslib.as_array(points))
 
     def pairs(self, points: Any = None, rim: float = 0.0) -> Pairs:
-        """Pairs of some points, by their numbers, or of all. rim [m]: how far a facet goes on beyond the border."""
+        """Pairs of some points, by their numbers, or of all.
+
+        rim [m]: how far a facet goes on beyond the border, and how deep behind it a point there belongs to it.
+        """
         chosen = np.arange(self.count, dtype=np.int32) if points is None else _numbers("points", points, self.count)
         count = len(chosen)
         made = Pairs(*np.empty((2, count), np.int32), np.empty(count), np.empty((count, self.dimension)),

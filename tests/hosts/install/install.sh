@@ -34,6 +34,7 @@ for file in bin/ilaw bin/ilaw-describe lib/ilaw/contact.so lib/ilaw/contact.json
             lib/libilaw_coupled.a lib/libilaw_coupled.so lib/libilaw_coupled.so.1 include/ilaw/coupled.h lib/cmake/ilaw/ilawConfig.cmake lib/pkgconfig/ilaw.pc \
             lib/libilaw_search.a lib/libilaw_search.so lib/libilaw_search.so.1 include/ilaw/search.h lib/pkgconfig/ilaw_search.pc \
             lib/pkgconfig/ilaw_coupled.pc share/ilaw/fortran/ilaw.f90 share/ilaw/fortran/ilaw_coupled.f90 \
+            lib/libilaw_openradioss.so share/ilaw/openradioss/ilaw_openradioss_window.py share/ilaw/openradioss/examples/run.sh \
             share/ilaw/yade/ilaw_yade.py share/ilaw/mujoco/ilaw_mujoco.hpp share/ilaw/mujoco/examples/gripper.xml share/ilaw/abaqus/vfric.f share/ilaw/dealii/CMakeLists.txt share/ilaw/template_repository/template_law.cpp share/ilaw/template_repository/.github/workflows/check.yml share/ilaw/python/examples/dolfinx/throw.py share/ilaw/python/ilaw/coupled.py share/ilaw/python/ilaw/plot.py share/ilaw/python/ilaw/view.html share/ilaw/python/ilaw/view.js \
             share/ilaw/python/pyproject.toml share/man/man1/ilaw.1 share/man/man1/ilaw-check.1 share/man/man1/ilaw-describe.1 share/doc/ilaw/copyright share/doc/libilaw-dev/copyright \
             share/ilaw/scenes/two_bars.json share/ilaw/scenes/bouncing_ball.json \

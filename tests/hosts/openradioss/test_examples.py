@@ -100,6 +100,14 @@ def test_the_judge_tells_a_wrong_run(tmp_path):
     assert done.returncode == 1 and "found judge fall" in done.stderr and "slide, impact, two_bars, peel" in done.stderr
 
 
+def test_the_judge_tells_a_continued_run_with_other_bits(tmp_path):
+    for case, last in (("bond", 1.9748417658131499), ("continued", 1.9748417658131497)):
+        (tmp_path / case).mkdir()
+        (tmp_path / case / "history.csv").write_text(f"0.0,0.0,2.0\n0.0,0.0,2.0\n0.1,0.2,{last!r}\n")
+    checks = cases.judge("continued", tmp_path / "continued")
+    assert [found for _, found, *_ in checks] == [1.9748417658131497, 1] and checks[1][3] == 0.0
+
+
 def test_facets_of_a_block_are_seen_from_outside():
     nodes, bricks = decks.block((2, 3, 1), (2.0, 3.0, 1.0), (0.0, 0.0, 0.0))
     x = dict(nodes)
@@ -129,6 +137,7 @@ def test_run_leads_openradioss_to_one_python(tmp_path):
         stub.write_text('#!/bin/sh\nreadlink "${LD_LIBRARY_PATH%%:*}/libpython3.12.so" >>../found\n')
         stub.chmod(0o755)
     environment = os.environ | dict(OPENRADIOSS=str(tmp_path), RAD_PYTHON_PATH="/of/libpython3.x.so")
+    environment["ILAW_RADIOSS_LIBRARY"] = "/none"
     subprocess.run([EXAMPLES / "run.sh", "runs"], cwd=tmp_path, env=environment, capture_output=True)
     assert (tmp_path / "runs/found").read_text() == 8 * "/of/libpython3.x.so\n"
 
