@@ -20,8 +20,9 @@ import zlib
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SEED = int(os.environ.get("ILAW_RUN_FOLDER_SEED", "57"))
-SEQUENCES = int(os.environ.get("ILAW_RUN_FOLDER_SEQUENCES", "100"))
+SEQUENCES = int(os.environ.get("ILAW_RUN_FOLDER_SEQUENCES", "60"))
 ENDS = {"ball": 0.21, "longer_ball": 0.35, "bars": 1.01, "plain": 0.21}
+SIGNALS = ["int", "term", "hup"]
 CALLS = ["any", "write", "open", "fsync", "rename"]
 MEMORY = pathlib.Path("/dev/shm")  # fsync takes most of the time elsewhere
 
@@ -105,9 +106,13 @@ class World:
                    "--checkpoint-every", "40", "--threads", str(action.threads)] + ["--resume"] * action.resumes
         (self.home / "count").unlink(missing_ok=True)
         limit = [n if call == "size" else resource.RLIM_INFINITY] * 2
+
+        def prepare():
+            resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+            for number in (signal.SIGINT, signal.SIGHUP):  # which a job in the background ignores
+                signal.signal(number, signal.SIG_DFL)
         with (self.home / "said").open("w") as said:
-            return subprocess.Popen(command, stdout=said, stderr=said, preexec_fn=lambda: resource.setrlimit(
-                resource.RLIMIT_FSIZE, limit), env={
+            return subprocess.Popen(command, stdout=said, stderr=said, preexec_fn=prepare, env={
                 **os.environ, "LD_PRELOAD": os.environ["ILAW_INJECT_LIBRARY"],
                 "ILAW_INJECT": f"{folder}:{call}:{n}:{how}", "ILAW_INJECT_COUNT": str(self.home / "count")})
 
@@ -124,6 +129,7 @@ class Folder:
     def __init__(self, world, seen):
         self.world, self.seen = world, seen
         self.place = pathlib.Path(tempfile.mkdtemp(dir=world.home)) / "a"
+        self.is_covered = False  # whether the checkpoint is of the end of all files
         self.owners = set()  # scenes whose files may be in the folder
         self.damaged = {}  # file: whether the checkpoint speaks of all of it
 
@@ -149,11 +155,8 @@ class Folder:
         else:
             file.write_bytes(data[:at] if action.how == "cut" else data)
         # Rows after the last checkpoint are written anew, so their damage does no harm.
-        self.damaged[action.file] = action.file == "checkpoint.cbor" or self.was_ended()
+        self.damaged[action.file] = action.file == "checkpoint.cbor" or self.is_covered
         self.seen[f"damage: {action.how}"] += 1
-
-    def was_ended(self):
-        return not (self.place / "history.csv.partial").exists() and (self.place / "summary.json").exists()
 
     def run(self, action):
         before, place = files_in(self.place), self.place
@@ -163,6 +166,7 @@ class Folder:
         code, said = program.wait(), self.world.text()
         how = action.fault[2] if self.has_fired(action, code) else ""
         self.seen[f"{'resume' if action.resumes else 'run'} {how or 'undisturbed'}: {code}"] += 1
+        self.is_covered = code == 0 or how in SIGNALS or (code == 2 and not how and self.is_covered)
         if code == -signal.SIGKILL and how in ("kill", "stop"):
             self.owners.add(action.scene)
         elif how in ("fail", "full") or (how == "stop" and action.meanwhile == "move"):
@@ -174,7 +178,7 @@ class Folder:
         elif code == 0:
             demand(not action.resumes or not any(self.damaged.values()), "resumed in spite of damage:", self.damaged)
             self.expect_bits(action.scene, said)
-        elif how == "term" and code == 1:
+        elif how in SIGNALS and code == 1:
             self.expect_interrupted(action.scene, said)
         else:
             self.expect_refused(action, code, said, before)
@@ -223,7 +227,9 @@ class Folder:
 
     def expect_interrupted(self, scene, said):
         demand("interrupted at step" in said and str(self.place) in said, said)
-        demand(json.loads((self.place / "summary.json").read_text())["interrupted"], "the summary tells nothing")
+        summary, rows = json.loads((self.place / "summary.json").read_text()), (self.place / "history.csv").read_bytes()
+        demand(summary["interrupted"], "the summary tells nothing")
+        demand(rows.count(b"\n") == 1 + summary["steps"], "other rows than steps")
         demand(not list(self.place.glob("*.partial")), "a stopped run left", list(self.place.glob("*.partial")))
         self.owners.add(scene)
         demand((self.place / "checkpoint.cbor").is_file(), "a stopped run left no checkpoint")
@@ -271,7 +277,7 @@ class Folder:
 # ---- sequences -------------------------------------------------------------------------------------------
 
 def drawn_run(draw, world, scene, resumes):
-    how = draw.choices(["", "fail", "full", "size", "kill", "term", "stop"], [4, 2, 1, 1, 4, 2, 2])[0]
+    how = draw.choices(["", "fail", "full", "size", "kill", "stop", *SIGNALS], [4, 2, 1, 1, 4, 3, 1, 1, 1])[0]
     if not how:
         return Run(scene, resumes, threads=draw.choice([1, 2]))
     if how == "size":
@@ -352,8 +358,9 @@ class RunFolder(unittest.TestCase):
         actions, why, seen = search(World(self.home), SEED, SEQUENCES)
         self.assertFalse(actions, f"seed {SEED}: {why}\n" + "\n".join(map(str, actions)))
         print(f"seed {SEED}, {SEQUENCES} sequences:", dict(sorted(seen.items())))
-        for event in ("run kill: -9", "resume kill: -9", "run full: 1", "run fail: 1", "run term: 1", "run stop: 1",
-                      "run stop: 0", "resume undisturbed: 0", "resume undisturbed: 2", "damage: turn"):
+        for event in ("run kill: -9", "resume kill: -9", "run full: 1", "run fail: 1", "run int: 1", "run term: 1",
+                      "run hup: 1", "run stop: 1", "run stop: 0", "resume undisturbed: 0", "resume undisturbed: 2",
+                      "damage: turn"):
             self.assertGreater(seen[event], 0, event)
 
     def test_shortens_a_sequence_that_fails(self):
