@@ -19,7 +19,8 @@ import unittest
 import zlib
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-SEED = int(os.environ.get("ILAW_RUN_FOLDER_SEED", "57"))
+FIXED_SEED = 57
+SEED = int(os.environ.get("ILAW_RUN_FOLDER_SEED", FIXED_SEED))
 SEQUENCES = int(os.environ.get("ILAW_RUN_FOLDER_SEQUENCES", "60"))
 ENDS = {"ball": 0.21, "longer_ball": 0.35, "bars": 1.01, "plain": 0.21}
 SIGNALS = ["int", "term", "hup"]
@@ -358,6 +359,8 @@ class RunFolder(unittest.TestCase):
         actions, why, seen = search(World(self.home), SEED, SEQUENCES)
         self.assertFalse(actions, f"seed {SEED}: {why}\n" + "\n".join(map(str, actions)))
         print(f"seed {SEED}, {SEQUENCES} sequences:", dict(sorted(seen.items())))
+        if SEED != FIXED_SEED:
+            return
         for event in ("run kill: -9", "resume kill: -9", "run full: 1", "run fail: 1", "run int: 1", "run term: 1",
                       "run hup: 1", "run stop: 1", "run stop: 0", "resume undisturbed: 0", "resume undisturbed: 2",
                       "damage: turn"):
