@@ -30,6 +30,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -41,8 +42,9 @@ namespace {
 
 double seconds_since(double start) { return clock_seconds(CLOCK_MONOTONIC) - start; }
 
-// Beginning of the name of rows that an earlier part of the run wrote with other columns.
-constexpr const char* earlier_history = "history.until_step_";
+// Names of the files that are never continued.
+constexpr const char* written_at_once =
+    "(checkpoint\\.cbor|summary\\.json|(fields|obstacles)(_[0-9]{6,}\\.vtu|\\.vtu\\.series)|diverged\\.vtu)";
 
 // A run and what it writes. The constructor throws WriteError where nothing can be written, and
 // other std::runtime_error where there is nothing to resume from.
@@ -114,21 +116,26 @@ class Run {
   RunRecord record;
 
  private:
-  // Results that an earlier run left in the folder, and pictures of them, would be taken for this one's.
-  void clear() const {
-    clear_checkpoint(options_.folder);
-    for (const char* name : {"summary.json", "history.csv", "events.csv", "view.html"})
-      std::filesystem::remove(options_.folder / name);
+  // Removes the files of an earlier run, or what is left of them, whose whole names match.
+  void remove_files(const std::string& names) const {
+    const std::regex own(names);
     std::vector<std::filesystem::path> earlier;
     for (const auto& entry : std::filesystem::directory_iterator(options_.folder))
-      if (entry.path().filename().string().starts_with(earlier_history)) earlier.push_back(entry.path());
+      if (std::regex_match(entry.path().filename().string(), own)) earlier.push_back(entry.path());
     for (const std::filesystem::path& file : earlier) std::filesystem::remove(file);
+  }
+
+  // Results that an earlier run left in the folder, and pictures of them, would be taken for this one's.
+  void clear() const {
+    clear_checkpoint(options_.folder);  // before the files that it speaks of
+    remove_files("(" + std::string(written_at_once) +
+                 "|view\\.html|(history|history\\.until_step_[0-9]+|events)\\.csv)(\\.partial)?");
     remove_pictures(options_.folder);
-    fields_.clear();
   }
 
   void resume() {
     const Checkpoint checkpoint = read_checkpoint(scene_, integrator_, options_.folder);
+    remove_files(std::string(written_at_once) + "\\.partial");  // those that a killed run was writing
     fields_.resume(checkpoint.fields);
     record.resumed_at = checkpoint_step_ = integrator_.steps();
     const bool goes_on =
@@ -144,7 +151,7 @@ class Run {
     if (!goes_on) {
       AtomicFile(file, checkpoint.history).commit();
       std::filesystem::rename(
-          file, options_.folder / (earlier_history + std::to_string(integrator_.steps()) + ".csv"));
+          file, options_.folder / ("history.until_step_" + std::to_string(integrator_.steps()) + ".csv"));
       history_ = std::make_unique<History>(scene_, integrator_, options_.folder);
       return;
     }

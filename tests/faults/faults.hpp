@@ -1,4 +1,4 @@
-// faults.hpp - runs of the program whose files are looked at afterwards.
+// faults.hpp - what attacks on the program share.
 #pragma once
 
 #include "host/program_runner.hpp"
@@ -9,18 +9,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <string>
 
 namespace ilaw::host::testing {
-
-// Everything in a folder, by name.
-inline std::map<std::string, std::string> files_in(const fs::path& folder) {
-  std::map<std::string, std::string> files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    files[entry.path().filename().string()] = text_of(entry.path());
-  return files;
-}
 
 inline json shipped(const std::string& name) {
   return json::parse(text_of(scene_files::named(name + ".json")));

@@ -1,6 +1,7 @@
-/* Preloaded: the n-th of some calls that a program makes in one folder fails, is cut short, or is where it is
- * killed. ILAW_INJECT="folder:call:n:how"; call: open, write, fsync, rename or any; how: fail, full (no room
- * from here on) or kill. ILAW_INJECT_COUNT names a file that gets the number of such calls. */
+/* Preloaded: the n-th of some calls that a program makes in one folder fails, is cut short, or is where it
+ * gets a signal. ILAW_INJECT="folder:call:n:how"; call: open, write, fsync, rename or any; how: fail, full
+ * (no room from here on), kill, or int, term, hup and stop, after which the call goes on. ILAW_INJECT_COUNT
+ * names a file that gets the number of such calls. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -40,16 +41,29 @@ static int is_inside(const char* path) {
   return length > 0 && path && strncmp(path, folder, length) == 0 && path[length] == '/';
 }
 
-static void die(void) { syscall(SYS_kill, syscall(SYS_getpid), SIGKILL); }
+static void send(int signal) { syscall(SYS_kill, syscall(SYS_getpid), signal); }
 
-/* Whether this call is the one; does not come back where it is to be killed before a call that does nothing
- * by halves. */
+/* The signal after which the call goes on, or 0. */
+static int signal_of(const char* name) {
+  static const struct {
+    const char* name;
+    int number;
+  } signals[] = {{"int", SIGINT}, {"term", SIGTERM}, {"hup", SIGHUP}, {"stop", SIGSTOP}};
+  for (size_t k = 0; k < sizeof signals / sizeof *signals; ++k)
+    if (strcmp(name, signals[k].name) == 0) return signals[k].number;
+  return 0;
+}
+
+/* Whether this call is the one that fails; does not come back where it is to be killed before a call that
+ * does nothing by halves. */
 static int is_chosen(const char* name) {
   if (strcmp(call, name) != 0 && strcmp(call, "any") != 0) return 0;
   if (++seen != chosen) return 0;
   if (strcmp(how, "full") == 0) is_full = 1;
-  if (strcmp(how, "kill") == 0 && strcmp(name, "write") != 0) die();
-  return 1;
+  if (strcmp(how, "kill") == 0 && strcmp(name, "write") != 0) send(SIGKILL);
+  const int signal = signal_of(how);
+  if (signal) send(signal);
+  return !signal;
 }
 
 static int opened(const char* path, int flags, mode_t mode) {
@@ -86,7 +100,7 @@ ssize_t write(int descriptor, const void* bytes, size_t count) {
       return -1;
     }
     const ssize_t half = (ssize_t)syscall(SYS_write, descriptor, bytes, count / 2);
-    if (strcmp(how, "kill") == 0) die();
+    if (strcmp(how, "kill") == 0) send(SIGKILL);
     return half > 0 ? half : 1;
   }
   if (matters && is_full) {

@@ -79,13 +79,6 @@ TEST(Folder, IsOfOneRunAtATime) {
   EXPECT_EQ(run_program("run " + ball + " --out " + out.string()).code, 0);
 }
 
-// A process that was killed leaves its lock, which holds nobody back.
-TEST(Folder, OfAKilledRunIsFree) {
-  const auto folder = fresh_folder();
-  std::ofstream(folder / "ilaw.lock") << "process 1 on nowhere\n";
-  EXPECT_EQ(run_program("run " + ball + " --out " + folder.string()).code, 0);
-}
-
 // Whatever a link in the folder leads to stays as it is.
 TEST(Folder, HasNoLinkThatIsFollowed) {
   const auto folder = fresh_folder(), out = folder / "out";

@@ -5,10 +5,8 @@
 
 #include <omp.h>
 
-#include <csignal>
 #include <cstring>
 #include <new>
-#include <thread>
 
 namespace ilaw::host::testing {
 namespace {
@@ -107,112 +105,6 @@ INSTANTIATE_TEST_SUITE_P(Checkpoint, Resumed, ::testing::ValuesIn(resumed_scenes
                          [](const auto& drawn) { return drawn.param.first; });
 
 // ---- the program ----------------------------------------------------------------------------------------
-
-// A run of a second or so, in small steps, with fields.
-json long_scene() {
-  json scene = shipped("block_impact");
-  scene["model"]["blocks"][0]["elements"] = {4, 4, 4};
-  scene["time"] = {{"cfl", 0.01}, {"end", 0.03}};
-  scene["output"] = {{"every", 7}, {"watch", {0, 80}}, {"fields", 900}, {"balance", true}};
-  return scene;
-}
-
-// Results that must not depend on an interruption: all but the time the run took, and which contacts were
-// active, which depends on when the near ones were last found.
-json results_of(const fs::path& folder) {
-  json summary = json_of(folder / "summary.json");
-  for (const char* key : {"seconds", "execution"}) summary.erase(key);
-  return summary;
-}
-
-void expect_same_results(const fs::path& a, const fs::path& b) {
-  EXPECT_EQ(text_of(a / "history.csv"), text_of(b / "history.csv"));
-  EXPECT_EQ(results_of(a), results_of(b));
-  const json series = json_of(a / "fields.vtu.series");
-  EXPECT_EQ(series, json_of(b / "fields.vtu.series"));
-  EXPECT_GT(series["files"].size(), 3U);
-  for (const json& file : series["files"]) {
-    const std::string name = file["name"];
-    EXPECT_EQ(text_of(a / name), text_of(b / name)) << name;
-  }
-}
-
-class Interrupted : public ::testing::TestWithParam<int> {};
-
-// Ended again and again, a while after a new checkpoint, and resumed each time.
-TEST_P(Interrupted, LeavesTheResultsOfAnUninterruptedRun) {
-  const auto whole = fresh_folder(), parts = fresh_folder();
-  const std::string scene = written(long_scene(), whole);
-  ASSERT_EQ(run_program("run " + scene + " --out " + whole.string()).code, 0);
-  std::mt19937 engine(31);
-  std::vector<std::string> command{"run", scene, "--out", parts.string(), "--checkpoint-every", "100"};
-  int ended = 0;
-  for (bool running = true; running && ended < 4; ++ended) {
-    const std::string before = text_of(parts / "checkpoint.cbor");
-    const pid_t child = start_program(command, parts / "messages");
-    while ((running = waitpid(child, nullptr, WNOHANG) == 0) && text_of(parts / "checkpoint.cbor") == before)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    if (!running) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(std::uniform_int_distribution<int>(0, 80)(engine)));
-    kill(child, GetParam());
-    waitpid(child, nullptr, 0);
-    if (ended == 0) command.emplace_back("--resume");
-  }
-  EXPECT_GE(ended, 2) << "the run is too short for this machine";
-  const Outcome last =
-      run_program("run " + scene + " --out " + parts.string() + " --checkpoint-every 100 --resume");
-  EXPECT_EQ(last.code, 0) << last.output;
-  EXPECT_GE(json_of(parts / "summary.json")["execution"]["resumed_at_step"], 200);
-  expect_same_results(whole, parts);
-}
-
-INSTANTIATE_TEST_SUITE_P(Checkpoint, Interrupted, ::testing::Values(SIGKILL, SIGTERM, SIGINT),
-                         [](const auto& drawn) { return std::string(sigabbrev_np(drawn.param)); });
-
-// Where it stopped by itself a run says how to go on; its files are whole.
-TEST(Checkpoint, IsWrittenWhereARunIsInterrupted) {
-  const auto folder = fresh_folder();
-  const std::string scene = written(long_scene(), folder);
-  const pid_t child = start_program({"run", scene, "--out", folder.string(), "--checkpoint-every", "100000"},
-                                    folder / "messages");
-  for (int k = 0; k < 5000 && !fs::exists(folder / "history.csv.partial"); ++k)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  kill(child, SIGTERM);
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 1);
-  EXPECT_THAT(text_of(folder / "messages"), HasSubstr("--resume goes on from there"));
-  const json summary = json_of(folder / "summary.json");
-  EXPECT_TRUE(summary["interrupted"]);
-  for (const auto& entry : fs::directory_iterator(folder))
-    EXPECT_NE(entry.path().extension(), ".partial") << entry.path();
-  EXPECT_EQ(run_program("run " + scene + " --out " + folder.string() + " --resume").code, 0);
-  EXPECT_EQ(json_of(folder / "summary.json")["execution"]["resumed_at_step"], summary["steps"]);
-}
-
-// A disk that is full ends a run with what it took, whole rows, and --resume goes on once there is room. Here
-// a file may have 1 MB, a tenth of the history.
-TEST(Checkpoint, OutlivesAFullDisk) {
-  const auto whole = fresh_folder(), full = fresh_folder();
-  json scene = shipped("bouncing_ball");
-  scene["time"]["end"] = 50.0;
-  const std::string file = written(scene, whole);
-  ASSERT_EQ(run_program("run " + file + " --out " + whole.string()).code, 0);
-  const std::string command = "run " + file + " --out " + full.string() + " --checkpoint-every 1000";
-  EXPECT_THAT(run_program(command, "ulimit -f 2048; "),
-              Exits(1, HasSubstr("history.csv: cannot be written: File too large")));
-  const std::string rows = text_of(full / "history.csv"), all = text_of(whole / "history.csv");
-  EXPECT_GT(rows.size(), 900000U);
-  EXPECT_EQ(rows.back(), '\n');
-  EXPECT_EQ(rows, all.substr(0, rows.size()));
-  EXPECT_FALSE(fs::exists(full / "history.csv.partial"));
-  EXPECT_NE(json_of(full / "summary.json")["failure"], "");
-  const Outcome resumed = run_program(command + " --resume");
-  EXPECT_EQ(resumed.code, 0) << resumed.output;
-  EXPECT_EQ(text_of(full / "history.csv"), all);
-  EXPECT_EQ(results_of(full), results_of(whole));
-}
 
 // Nothing to go on from is bad input, found before anything ran: nothing is written.
 TEST(Checkpoint, OfNoRunOrAnotherOneIsRefused) {

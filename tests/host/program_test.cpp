@@ -235,44 +235,6 @@ TEST(Program, RemovesTheFieldsOfAnEarlierRun) {
   EXPECT_TRUE(fs::exists(folder / "fields_of_mine.vtu"));
 }
 
-class Stopped : public ::testing::TestWithParam<int> {};
-
-// Ctrl-C, kill and the end of a terminal end the run at the end of a step, with whole files that say so. No
-// progress bar without a terminal.
-TEST_P(Stopped, LeavesWholeFiles) {
-  const auto folder = fresh_folder();
-  json scene = shipped("bouncing_ball");
-  scene["time"]["end"] = 1e6;
-  scene["output"]["every"] = 1000;
-  scene["output"]["fields"] = 100000;
-  std::ofstream(folder / "scene.json") << scene.dump();
-  const pid_t child =
-      start_program({"run", (folder / "scene.json").string(), "--out", folder.string()}, folder / "messages");
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));
-  EXPECT_FALSE(fs::exists(folder / "history.csv"));  // not whole yet
-  kill(child, GetParam());
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 1);
-  const json summary = json_of(folder / "summary.json");
-  EXPECT_TRUE(summary["interrupted"]);
-  const auto steps = summary["steps"].get<std::int64_t>();
-  const std::string history = text_of(folder / "history.csv");
-  EXPECT_EQ(history.back(), '\n');
-  EXPECT_EQ(std::count(history.begin(), history.end(), '\n') - 1, steps / 1000);
-  const json series = json_of(folder / "fields.vtu.series");
-  EXPECT_EQ(series["files"].size(), 1U + static_cast<std::size_t>(steps / 100000));
-  for (const auto& file : series["files"]) EXPECT_TRUE(fs::exists(folder / file["name"].get<std::string>()));
-  for (const auto& entry : fs::directory_iterator(folder))
-    EXPECT_NE(entry.path().extension(), ".partial") << entry.path();
-  const std::string messages = text_of(folder / "messages");
-  EXPECT_THAT(messages, HasSubstr("interrupted at step"));
-  EXPECT_THAT(messages, Not(HasSubstr("\r")));
-}
-
-INSTANTIATE_TEST_SUITE_P(Program, Stopped, ::testing::Values(SIGINT, SIGTERM, SIGHUP),
-                         [](const auto& drawn) { return std::string(sigabbrev_np(drawn.param)); });
-
 // As nohup starts it.
 TEST(Program, GoesOnAtAHangUpThatIsIgnored) {
   const auto folder = fresh_folder();

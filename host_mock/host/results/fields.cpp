@@ -20,7 +20,6 @@
 
 #include <cmath>
 #include <limits>
-#include <regex>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -177,16 +176,6 @@ std::string text_of(vtkUnstructuredGrid& grid) {
 }
 
 }  // namespace
-
-void Fields::clear() const {
-  for (const char* name : {"fields.vtu.series", "obstacles.vtu.series", "diverged.vtu"})
-    std::filesystem::remove(folder_ / name);
-  const std::regex own("(fields|obstacles)_[0-9]{6,}\\.vtu(\\.partial)?");
-  std::vector<std::filesystem::path> old;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_))
-    if (std::regex_match(entry.path().filename().string(), own)) old.push_back(entry.path());
-  for (const std::filesystem::path& file : old) std::filesystem::remove(file);
-}
 
 void Fields::write(const Integrator& integrator) {
   const Model& model = *scene_.model;

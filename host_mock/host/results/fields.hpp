@@ -28,9 +28,6 @@ class Fields {
   // Writes diverged.vtu, the bodies alone: u, v, stress, and which elements are turned inside out.
   std::filesystem::path write_diverged(const Integrator& integrator) const;
 
-  // Removes those of an earlier run in the folder, which this one would not replace.
-  void clear() const;
-
   // The files so far, with their times and what is in them: to go on after a checkpoint.
   const nlohmann::json& written() const { return written_; }
   void resume(nlohmann::json written) {
