@@ -56,6 +56,7 @@ SECTIONS = [
     ("Sphere", [("obstacle_sphere", "`obstacle` of type `sphere`")]),
     ("Cylinder", [("obstacle_cylinder", "`obstacle` of type `cylinder`")]),
     ("Output", [("output", "`output`"), ("force_of", "an entry of `forces` with a moment")]),
+    ("Expected values", [("expect", "entries of `expect`")]),
     ("Closed forms", [("exact", "`exact`")]),
     ("Convergence", [("converge", "`converge`")]),
     ("Laws side by side", [("study", "`study`"), ("study_law", "entries of `laws`")]),

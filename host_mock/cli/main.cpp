@@ -50,7 +50,7 @@ int run_command(int argc, char** argv) {
   app.footer(
       "Exit codes: 0 done; 1 the run failed (diverged, plugin error, interrupted); 2 bad usage or bad input, "
       "before\n"
-      "anything ran.\nExample: ilaw run scene.json --out results && ilaw plot results && ilaw view results");
+      "anything ran; 3 a value that the scene expects was missed.\nExample: ilaw run scene.json --out results && ilaw plot results && ilaw view results");
 
   int code = exit_done;
   for (const auto add : {add_run, add_plot, add_view, add_table, add_converge, add_study, add_stress,

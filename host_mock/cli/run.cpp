@@ -15,9 +15,9 @@
 #include "model/elements.hpp"
 #include "results/checkpoint.hpp"
 #include "results/events.hpp"
+#include "results/expectations.hpp"
 #include "results/fields.hpp"
 #include "results/history.hpp"
-#include "results/state_hash.hpp"
 #include "results/summary.hpp"
 #include "scene/read_meshes.hpp"
 #include "scene/scene.hpp"
@@ -57,13 +57,8 @@ class Run {
         fields_(scene, options.folder) {
     if (options.audits) audit_.emplace(scene, integrator_);
     if (options.tolerance) integrator_.set_tolerance(*options.tolerance);
-    if (options.resume) {
-      resume();
-      return;
-    }
-    clear();
-    history_ = std::make_unique<History>(scene_, integrator_, options_.folder);
-    if (scene_.output.events) events_.emplace(scene_, options_.folder);
+    options.resume ? resume() : begin();
+    check_expectations(expected(), summary(), history_->columns());
   }
 
   // Steps to the end, to a request to stop, or to a failure; the record says which.
@@ -104,9 +99,11 @@ class Run {
     integrator_.take_back_step();
     record.warnings = integrator_.warnings();
     warn_of_penetration();
-    record.forces = history_->forces().summary();
     try {
-      write_summary(scene_, integrator_, record, options_.folder);
+      nlohmann::json all = summary();
+      if (record.failure.empty() && !record.interrupted && !expected().empty())
+        judged = all["expectations"] = judge_expectations(expected(), all, options_.folder);
+      write_summary(all, options_.folder);
     } catch (const std::exception& failure) {
       if (record.failure.empty()) record.failure = message_of(failure);
     }
@@ -114,8 +111,22 @@ class Run {
 
   const Integrator& integrator() const { return integrator_; }
   RunRecord record;
+  nlohmann::json judged = nlohmann::json::array();  // expectations, of a whole run
 
  private:
+  nlohmann::json expected() const { return scene_.source.value("expect", nlohmann::json::array()); }
+
+  nlohmann::json summary() {
+    record.forces = history_->forces().summary();
+    return summary_of(scene_, integrator_, record);
+  }
+
+  void begin() {
+    clear();
+    history_ = std::make_unique<History>(scene_, integrator_, options_.folder);
+    if (scene_.output.events) events_.emplace(scene_, options_.folder);
+  }
+
   // Removes the files of an earlier run, or what is left of them, whose whole names match.
   void remove_files(const std::string& names) const {
     const std::regex own(names);
@@ -297,36 +308,13 @@ class Run {
 
 std::unique_ptr<Run> start_or_explain(Scene& scene, const RunOptions& options) {
   try {
-    return std::make_unique<Run>(scene, options);
+    return in_scene(scene.file, [&] { return std::make_unique<Run>(scene, options); });
   } catch (const WriteError&) {
     throw;
   } catch (const std::runtime_error& error) {
     complain(message_of(error));
   }
   return nullptr;
-}
-
-int report(const Scene& scene, const Integrator& integrator, const RunRecord& record,
-           const RunOptions& options) {
-  const std::filesystem::path& folder = options.folder;
-  const std::string file = scene.file.string(), steps = std::to_string(integrator.steps());
-  if (!record.failure.empty()) {
-    complain(file + ": failed after step " + steps + ", time " + text_of("%g", integrator.time()) + ": " +
-             record.failure);
-    return exit_failed;
-  }
-  if (record.interrupted) {
-    complain(file + ": interrupted at step " + steps + " of " + std::to_string(scene.steps) +
-             "; the files in " + folder.string() + " are whole up to there" +
-             (options.checkpoint_every > 0 ? ", and --resume goes on from there" : ""));
-    return exit_failed;
-  }
-  std::printf(
-      "%s: %lld steps to time %g in %.2g s, energy balance closed to %.1e, state %s%s; results in %s\n",
-      printable(scene.title).c_str(), static_cast<long long>(integrator.steps()), integrator.time(),
-      record.seconds_total, integrator.energy().balance_error, state_hash(scene, integrator).c_str(),
-      scene.warnings.empty() && record.warnings.empty() ? "" : ", with warnings", folder.c_str());
-  return exit_done;
 }
 
 int run(const RunOptions& options) {
@@ -359,7 +347,7 @@ int run_scene(Scene& scene, const RunOptions& options) {
   run->advance();
   run->finish(seconds_since(start));
   warn(run->record.warnings);
-  return report(scene, run->integrator(), run->record, options);
+  return report_run(scene, run->integrator(), run->record, run->judged, options);
 }
 
 void add_run(CLI::App& app, int& code) {

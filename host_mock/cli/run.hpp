@@ -3,6 +3,7 @@
 #pragma once
 
 #include "check/progress.hpp"
+#include "results/summary.hpp"
 #include "scene/scene.hpp"
 
 #include <cstdint>
@@ -28,6 +29,10 @@ struct RunOptions {
 // Runs a scene that was read into options.folder, which it makes and holds; says on stderr what goes wrong.
 // Returns an ExitCode.
 int run_scene(Scene& scene, const RunOptions& options);
+
+// Says how a run ended, and gives its ExitCode. judged: its expectations, as judge_expectations gives them.
+int report_run(const Scene& scene, const Integrator& integrator, const RunRecord& record,
+               const nlohmann::json& judged, const RunOptions& options);
 
 // settings: "/pointer=value,value,...". Every combination runs into a folder of its own in
 // options.folder, options.threads at a time; sweep.csv there has a row for each. Nothing runs if

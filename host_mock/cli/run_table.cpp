@@ -5,9 +5,9 @@
 #include "base/csv_file.hpp"
 #include "base/scene_error.hpp"
 #include "base/words.hpp"
+#include "results/quantities.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -25,50 +25,10 @@ std::string cell_text(const json& value) {
   return text;
 }
 
-// The numbers of a summary, by names as "energy.kinetic".
-std::map<std::string, json> numbers_of(const json& summary) {
-  std::map<std::string, json> numbers;
-  for (const char* part : {"steps", "dt", "time", "failure", "interrupted", "penetration_max", "stable_step",
-                           "energy", "status_counts", "forces", "seconds"}) {
-    if (!summary.contains(part)) continue;
-    const json flat = json{{part, summary[part]}}.flatten();
-    for (const auto& [pointer, value] : flat.items()) {
-      std::string name = pointer.substr(1);
-      std::replace(name.begin(), name.end(), '/', '.');
-      if (!value.is_structured()) numbers[name] = value;
-    }
-  }
-  numbers["warnings"] = summary.value("warnings", json::array()).size();
-  return numbers;
-}
-
-// One number of a column of the history; nothing where there is no such column.
-std::optional<double> reduced(const RunFolder& run, const std::string& column, const std::string& kind) {
-  CsvFile history(run.folder / "history.csv");
-  const auto index = history.index_of(column);
-  if (!index) return std::nullopt;
-  double last = std::nan(""), least = HUGE_VAL, largest = -HUGE_VAL, sum = 0.0, count = 0.0;
-  for (std::vector<double> row; history.next(row);) {
-    last = row[*index];
-    if (!std::isfinite(last)) continue;
-    least = std::min(least, last);
-    largest = std::max(largest, last);
-    sum += last;
-    ++count;
-  }
-  if (kind == "min") return least;
-  if (kind == "max") return largest;
-  return kind == "mean" ? sum / count : last;
-}
-
 std::optional<std::string> cell(const RunFolder& run, const std::string& column) {
   const std::map<std::string, json> numbers = numbers_of(run.summary);
   if (const auto found = numbers.find(column); found != numbers.end()) return cell_text(found->second);
-  const std::size_t colon = column.rfind(':');
-  const std::string kind = colon == std::string::npos ? "last" : column.substr(colon + 1);
-  if (kind != "last" && kind != "min" && kind != "max" && kind != "mean")
-    throw InputError(column + ": found '" + kind + "', expected one of last, min, max, mean");
-  const std::optional<double> value = reduced(run, column.substr(0, colon), kind);
+  const std::optional<double> value = value_of(history_quantity(column), run.folder);
   if (!value) return std::nullopt;
   return cell_text(json(*value));
 }

@@ -200,6 +200,7 @@ int sweep(const RunOptions& options, const std::vector<std::string>& texts) {
     settings = parse_settings(texts);
     variants = variants_of(settings);
     source = read_scene_source(options.scene);
+    source.erase("expect");  // its values belong to the scene as it is
     for (const Variant& variant : variants) {
       name = variant.name;
       steps += scene_of(variant, settings, source, options.scene).steps;

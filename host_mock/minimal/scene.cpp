@@ -237,8 +237,8 @@ void read_time(const json& time, Scene& scene) {
 // "balance" and "forces" ask for more columns, which this host leaves out.
 Scene read(const json& source) {
   only(source, "/",
-       {"title", "doc", "model", "time", "fields", "loads", "interfaces", "output", "exact", "converge",
-        "study"});
+       {"title", "doc", "model", "time", "fields", "loads", "interfaces", "output", "expect", "exact",
+        "converge", "study"});
   const json none = json::array();
   const json& loads = source.contains("loads") ? source["loads"] : none;
   const json& interfaces = source.contains("interfaces") ? source["interfaces"] : none;

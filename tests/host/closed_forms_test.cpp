@@ -1,5 +1,5 @@
-// Shipped scenes with closed forms: an impact oscillator, stick-slip, a peeled double cantilever, a
-// bond in mixed mode, a landing gear, a seal and a rolling wheel.
+// Shipped scenes with closed forms: an impact oscillator, stick-slip, a bond in
+// mixed mode, a landing gear, a seal and a rolling wheel.
 #include "run_result.hpp"
 
 namespace ilaw::host::testing {
@@ -105,18 +105,6 @@ TEST(StickSlip, TurnsAtExactInstants) {
   expect_first_order("stick_slip", 8.0, turns, exact_turns());
 }
 
-// ---- double cantilever ----
-// The half beam of thickness t lifted by w is open over a = (3 E t^3 w^2/(8 G))^(1/4) - 0.605 t: beam theory,
-// with the correction for the root's rotation of Williams (1989), chi = 0.605 for an isotropic beam of nu =
-// 0. The energy of rupture, over toughness and width, is the crack's length.
-TEST(DoubleCantilever, OpensAsBeamTheorySays) {
-  auto [scene, integrator] = run_to_end(shipped("dcb_peel"));
-  const double t = 0.05, w = 0.01, toughness = 5e-8, width = 0.0125;
-  const double crack = std::pow(3.0 * t * t * t * w * w / (8.0 * toughness), 0.25) - 0.605 * t;
-  const double opened = integrator.energy().by_law[ILAW_ENERGY_RUPTURE] / (toughness * width);
-  EXPECT_NEAR(opened, crack, 0.02 * crack);
-}
-
 // ---- mixed mode ----
 // Pulled along x off a plane at 30 degrees, the opening has the share of shear B = 1/4: toughness G = 2e-6 +
 // 6e-6 B^2 and strength^2 = 1e-6 + 3e-6 B^2 (Benzeggagh-Kenane, exponent 2). The bar of E = L = 1 loads to
@@ -136,7 +124,6 @@ TEST(MixedModeBar, SoftensAndBreaksAsMixedTractionSays) {
     largest = std::max(largest, std::abs(force / area - exact));
   }
   EXPECT_LE(largest, 0.01 * strength);
-  EXPECT_NEAR(integrator.energy().by_law[ILAW_ENERGY_RUPTURE], toughness * area, 1e-12 * toughness * area);
 }
 
 // ---- landing gear ----

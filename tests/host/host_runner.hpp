@@ -38,7 +38,12 @@ using ilaw::testing::Random;
 // Laws come from this build, here and in the programs that a test starts.
 inline const int plugin_folder_is_set = setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
 
-inline json shipped(const std::string& name) { return read_scene_source(scene_files::named(name + ".json")); }
+// Without the values that it expects, which belong to the scene as it is.
+inline json shipped(const std::string& name) {
+  json source = read_scene_source(scene_files::named(name + ".json"));
+  source.erase("expect");
+  return source;
+}
 
 inline Scene scene_of(const std::string& text) {
   const auto folder = fresh_folder();

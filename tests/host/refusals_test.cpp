@@ -35,7 +35,7 @@ TEST_P(Mistakes, AreNamedWithPointerFoundAndAllowed) {
 
 const Mistake scene_mistakes[] = {
     {"/interface", "[]",
-     "/interface: unknown key, expected one of: converge, doc, exact, fields, initial, interfaces, loads, "
+     "/interface: unknown key, expected one of: converge, doc, exact, expect, fields, initial, interfaces, loads, "
      "model, output, prestress, sets, springs, study, time, title, units (did you mean 'interfaces'?)"},
     {"/model/type", "\"bar\"", "/model/type: found \"bar\", expected one of \"points\""},
     {"/model/dimension", "4", "/model/dimension: found 4, expected integer >= 1 and <= 3"},

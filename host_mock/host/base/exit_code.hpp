@@ -4,6 +4,6 @@
 
 namespace ilaw::host {
 
-enum ExitCode { exit_done = 0, exit_failed = 1, exit_bad_input = 2 };
+enum ExitCode { exit_done = 0, exit_failed = 1, exit_bad_input = 2, exit_missed = 3 };
 
 }  // namespace ilaw::host

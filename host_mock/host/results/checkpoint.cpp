@@ -60,7 +60,8 @@ json content_of(const std::string& file) {
 
 // The part of a scene that determines its steps, without their end and the keys of output and reading.
 json cause_of(json scene) {
-  for (const char* key : {"title", "doc", "units", "output", "exact", "converge", "study"}) scene.erase(key);
+  for (const char* key : {"title", "doc", "units", "output", "expect", "exact", "converge", "study"})
+    scene.erase(key);
   scene.at("time").erase("end");
   return scene;
 }

@@ -82,11 +82,13 @@ void Forces::add_at(int node, const double* impulse, const ForceSetup& force, Re
     sum.moment[c] += about(d == 2 ? 2 : static_cast<std::size_t>(c));
 }
 
-void Forces::write_header(CsvWriter& table) const {
+void Forces::add_names(std::vector<std::string>& names) const {
   for (std::size_t k = 0; k < sums_.size(); ++k) {
     const std::string& name = scene_.output.forces[k].name;
-    for (Eigen::Index c = 0; c < sums_[k].impulse.size(); ++c) table << name + ".F" + std::to_string(c);
-    for (Eigen::Index c = 0; c < sums_[k].moment.size(); ++c) table << name + ".M" + std::to_string(c);
+    for (Eigen::Index c = 0; c < sums_[k].impulse.size(); ++c)
+      names.push_back(name + ".F" + std::to_string(c));
+    for (Eigen::Index c = 0; c < sums_[k].moment.size(); ++c)
+      names.push_back(name + ".M" + std::to_string(c));
   }
 }
 

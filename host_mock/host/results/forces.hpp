@@ -25,7 +25,7 @@ class Forces {
   void add_step(const Integrator& integrator);
 
   // <name>.F0 ..., and <name>.M0 ... where a moment is asked for.
-  void write_header(CsvWriter& table) const;
+  void add_names(std::vector<std::string>& names) const;
   // Means over the steps since the last row, which ends at the time.
   void write_row(CsvWriter& table, double time);
 

@@ -38,7 +38,9 @@ History::History(const Scene& scene, Integrator& integrator, const std::filesyst
       forces_(scene, integrator) {
   find_contacts();
   find_motions(integrator);
-  if (!written) write_header();
+  if (written) return;
+  for (const std::string& name : columns()) table_ << name;
+  table_.end_row();
 }
 
 // The impulse of a driven node that is in no interface is the reaction of its holder.
@@ -71,33 +73,34 @@ void History::find_contacts() {
   }
 }
 
-void History::write_header() {
+std::vector<std::string> History::columns() const {
   const int d = scene_.model->dimension();
-  table_ << "time";
+  std::vector<std::string> names = {"time"};
   for (std::size_t w = 0; w < contacts_.size(); ++w) {
     const std::string node = "n" + std::to_string(scene_.output.watch[w]) + ".";
     for (const char* quantity : {"u", "v", "r"})
-      for (int c = 0; c < d; ++c) table_ << node + quantity + std::to_string(c);
-    if (has_temperature(scene_.output.watch[w])) table_ << node + "T";
+      for (int c = 0; c < d; ++c) names.push_back(node + quantity + std::to_string(c));
+    if (has_temperature(scene_.output.watch[w])) names.push_back(node + "T");
     for (const Contact& contact : contacts_[w]) {
-      table_ << contact.prefix + "gap" << contact.prefix + "status";
+      names.push_back(contact.prefix + "gap");
+      names.push_back(contact.prefix + "status");
       for_each_state(contact.interface->info(),
-                     [&](const std::string& name, int) { table_ << contact.prefix + name; });
+                     [&](const std::string& name, int) { names.push_back(contact.prefix + name); });
     }
   }
-  forces_.write_header(table_);
+  forces_.add_names(names);
   if (scene_.output.balance) {
     for (const char* quantity :
          {"kinetic", "internal", "potential", "external_work", "damping_work", "interface_work",
           "dissipated_friction", "dissipated_impact", "dissipated_rupture", "stored", "error"})
-      table_ << std::string("balance.") + quantity;
+      names.push_back(std::string("balance.") + quantity);
     for (int c = 0; c < (d == 1 ? 0 : d == 2 ? 1 : 3); ++c)
-      table_ << "balance.angular_momentum" + std::to_string(c);
+      names.push_back("balance.angular_momentum" + std::to_string(c));
     if (scene_.model->thermal())
       for (const char* quantity : {"stored", "obstacles", "friction", "supplied", "error"})
-        table_ << std::string("heat.") + quantity;
+        names.push_back(std::string("heat.") + quantity);
   }
-  table_.end_row();
+  return names;
 }
 
 bool History::has_temperature(int node) const {

@@ -34,6 +34,7 @@ class History {
   void commit() { file_.commit(); }
   void keep_rows() { file_.keep_lines(); }
 
+  std::vector<std::string> columns() const;
   const Forces& forces() const { return forces_; }
   // The state beside the integrator on which the next row depends.
   void save(std::ostream& out) const { forces_.save(out); }
@@ -48,7 +49,6 @@ class History {
   };
   void find_contacts();
   void find_motions(Integrator& integrator);
-  void write_header();
   bool has_temperature(int node) const;
   void add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse);
 

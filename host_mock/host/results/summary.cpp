@@ -98,8 +98,7 @@ json describe_execution(const Scene& scene, const Tally& tally, const RunRecord&
 
 }  // namespace
 
-void write_summary(const Scene& scene, const Integrator& integrator, const RunRecord& record,
-                   const std::filesystem::path& folder) {
+json summary_of(const Scene& scene, const Integrator& integrator, const RunRecord& record) {
   const Tally& tally = integrator.tally();
   const PhaseSeconds seconds = integrator.seconds();
   json interfaces = json::array();
@@ -143,6 +142,10 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
   if (const auto& found = integrator.prestressed())
     summary["prestress"] = {{"steps", found->steps}, {"residual", found->residual}};
   if (!scene.meshes.empty()) summary["meshes"] = scene.meshes;
+  return summary;
+}
+
+void write_summary(const json& summary, const std::filesystem::path& folder) {
   // Names of files need not be UTF-8.
   write_file(folder / "summary.json", summary.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }

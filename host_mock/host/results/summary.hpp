@@ -22,8 +22,8 @@ struct RunRecord {
   double seconds_total = 0.0, seconds_output = 0.0;
 };
 
+nlohmann::json summary_of(const Scene& scene, const Integrator& integrator, const RunRecord& record);
 // summary.json.
-void write_summary(const Scene& scene, const Integrator& integrator, const RunRecord& record,
-                   const std::filesystem::path& folder);
+void write_summary(const nlohmann::json& summary, const std::filesystem::path& folder);
 
 }  // namespace ilaw::host

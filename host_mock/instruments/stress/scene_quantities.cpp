@@ -150,7 +150,8 @@ class Walk {
 }  // namespace
 
 bool for_each_quantity(json& scene, const std::function<void(const Quantity&, json&)>& visit) {
-  static const std::set<std::string> told = {"title", "doc", "units", "output", "exact", "converge", "study"};
+  static const std::set<std::string> told = {"title",  "doc",   "units",    "output",
+                                             "expect", "exact", "converge", "study"};
   bool all = true;
   for (auto item = scene.begin(); item != scene.end(); ++item)
     if (!told.contains(item.key())) all = Walk(visit)(item.value(), "/" + item.key(), scene) && all;

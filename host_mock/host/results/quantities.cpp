@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results/quantities.hpp"
+
+#include "base/csv_file.hpp"
+#include "base/scene_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace ilaw::host {
+
+using nlohmann::json;
+
+std::map<std::string, json> numbers_of(const json& summary) {
+  std::map<std::string, json> numbers;
+  for (const char* part : {"steps", "dt", "time", "failure", "interrupted", "penetration_max", "stable_step",
+                           "energy", "status_counts", "forces", "seconds"}) {
+    if (!summary.contains(part)) continue;
+    const json flat = json{{part, summary[part]}}.flatten();
+    for (const auto& [pointer, value] : flat.items()) {
+      std::string name = pointer.substr(1);
+      std::replace(name.begin(), name.end(), '/', '.');
+      if (!value.is_structured()) numbers[name] = value;
+    }
+  }
+  numbers["warnings"] = summary.value("warnings", json::array()).size();
+  return numbers;
+}
+
+HistoryQuantity history_quantity(const std::string& name) {
+  const std::size_t colon = name.rfind(':');
+  const std::string kind = colon == std::string::npos ? "last" : name.substr(colon + 1);
+  if (kind != "last" && kind != "min" && kind != "max" && kind != "mean")
+    throw InputError(name + ": found '" + kind + "', expected one of last, min, max, mean");
+  return {name.substr(0, colon), kind};
+}
+
+std::optional<double> value_of(const HistoryQuantity& quantity, const std::filesystem::path& folder) {
+  CsvFile history(folder / "history.csv");
+  const auto index = history.index_of(quantity.column);
+  if (!index) return std::nullopt;
+  double last = std::nan(""), least = HUGE_VAL, largest = -HUGE_VAL, sum = 0.0, count = 0.0;
+  for (std::vector<double> row; history.next(row);) {
+    last = row[*index];
+    if (!std::isfinite(last)) continue;
+    least = std::min(least, last);
+    largest = std::max(largest, last);
+    sum += last;
+    ++count;
+  }
+  if (quantity.kind == "min") return least;
+  if (quantity.kind == "max") return largest;
+  return quantity.kind == "mean" ? sum / count : last;
+}
+
+}  // namespace ilaw::host
