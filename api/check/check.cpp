@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstring>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -67,6 +66,7 @@ json verdict_of(const std::string& file, const std::string& law, const Rule& rul
     const ProcessState before_loading;
     calling("the loader");
     const ilaw::library library(file);
+    keep_part(options.part);
     rule.judge({library, *library.law(law), seed, options.parameters, before_loading});
     return json::object();
   } catch (const Finding& finding) {
@@ -114,7 +114,39 @@ Outcome judge_with(std::uint64_t seed, const std::string& file, const std::strin
   Outcome outcome = outcome_of(law, rule, ending);
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   outcome.seed = seed;
+  outcome.part = options.part;
   return outcome;
+}
+
+// Leaves out halves, quarters and so on of a list from its end, as long as "is_enough" says so of the rest.
+template <class Enough>
+void shrink(std::vector<std::size_t>& list, Enough is_enough) {
+  for (std::size_t size = list.size() / 2; size > 0; size /= 2)
+    for (std::size_t end = list.size(); end > 0 && list.size() > size;) {
+      const std::vector<std::size_t> before = list;
+      const std::size_t begin = end - std::min(size, end);
+      const auto at = [&](std::size_t k) { return list.begin() + static_cast<std::ptrdiff_t>(k); };
+      list.erase(at(begin), at(end));
+      if (!is_enough()) list = before;
+      end = begin;
+    }
+}
+
+// The same rule broken by fewer nodes in fewer steps.
+Outcome shrunken(Outcome found, const std::string& file, const std::string& law, const Rule& rule,
+                 Options options) {
+  constexpr std::size_t most_nodes = 512, most_steps = 16;
+  Part& part = options.part;
+  part = {numbers_below(most_nodes), numbers_below(most_steps)};
+  const auto is_broken = [&] {
+    const Outcome less = judge_with(found.seed, file, law, rule, options);
+    if (less.verdict == Verdict::broken) found = less;
+    return less.verdict == Verdict::broken;
+  };
+  shrink(part.nodes, is_broken);
+  shrink(part.steps, is_broken);
+  shrink(part.nodes, is_broken);
+  return found;
 }
 
 // The first finding, or what all seeds reached. A rule that one seed could judge is judged.
@@ -159,11 +191,6 @@ bool wanted(const Rule& rule, const Options& options) {
          std::find(options.only.begin(), options.only.end(), rule.id) != options.only.end();
 }
 
-const Rule& rule_of(const char* id) {
-  return *std::find_if(rules().begin(), rules().end(),
-                       [id](const Rule& rule) { return std::strcmp(rule.id, id) == 0; });
-}
-
 // A law's rules, those first that others need.
 class LawCheck {
  public:
@@ -178,10 +205,11 @@ class LawCheck {
   void run() {
     const std::size_t first = outcomes_.size();
     judge_all();
+    if (returns_) fuzz(first);
     for (std::size_t k = first; k < outcomes_.size(); ++k) all_.add(outcomes_[k].reach);
     for (std::size_t k = first; k < outcomes_.size(); ++k) {
       Outcome& outcome = outcomes_[k];
-      const bool moves = outcome.reach.steps > 0 && rule_of(outcome.rule.c_str()).needs == Needs::motion;
+      const bool moves = outcome.reach.steps > 0 && rule_of(outcome.rule).needs == Needs::motion;
       if (outcome.verdict == Verdict::passed && moves) outcome.missing = missing_in(outcome.reach, all_);
     }
   }
@@ -204,6 +232,33 @@ class LawCheck {
       outcomes_[first + k] = judge(*left[k]);
       progress_.add(1.0);
     });
+  }
+
+  // Seed after seed for the rules that move nodes and are not broken, until the time is over.
+  void fuzz(std::size_t first) {
+    using Clock = std::chrono::steady_clock;
+    const auto end = Clock::now() + std::chrono::duration<double>(60.0 * options_.fuzz_minutes);
+    std::uint64_t seed = *std::max_element(options_.seeds.begin(), options_.seeds.end());
+    std::vector<Outcome*> left;
+    for (std::size_t k = first; k < outcomes_.size(); ++k)
+      if (rule_of(outcomes_[k].rule).needs == Needs::motion) left.push_back(&outcomes_[k]);
+    for (;;) {
+      std::erase_if(left, [](const Outcome* one) { return one->verdict == Verdict::broken; });
+      if (left.empty() || Clock::now() >= end) return;
+      ++seed;
+      in_parallel(left.size(), [&](std::size_t k) {
+        if (Clock::now() < end) judge_once_more(*left[k], seed);
+      });
+    }
+  }
+
+  void judge_once_more(Outcome& outcome, std::uint64_t seed) const {
+    const Rule& rule = rule_of(outcome.rule);
+    const Outcome next = judge_with(seed, file_, law_, rule, options_);
+    if (next.verdict == Verdict::broken)
+      outcome = shrunken(next, file_, law_, rule, options_);
+    else
+      outcome.reach.add(next.reach);
   }
 
   Outcome judge(const Rule& rule) const {

@@ -6,7 +6,7 @@
 #include "check/progress.hpp"
 #include "check/reach.hpp"
 #include "check/sandbox.hpp"
-#include "check/trial.hpp"
+#include "check/script.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -23,6 +23,8 @@ struct Options {
   std::vector<std::uint64_t> seeds{1, 2, 3};
   std::optional<Values> parameters;  // of every instance of the law, instead of drawn ones
   Limits limits;                     // of a rule, a law and a seed
+  Part part;                         // of random motions that rules judge by any part
+  double fuzz_minutes = 0.0;         // of each law: seeds after those above, for all rules that move nodes
   ProgressForm progress = ProgressForm::none;
 };
 
@@ -34,6 +36,7 @@ struct Outcome {
   Finding finding;         // where it is broken
   std::string why;         // where it is not judged
   std::uint64_t seed = 0;  // of the finding
+  Part part{};             // that has the finding, too
   double seconds = 0.0;
   Reach reach{};
   // Statuses and state variables of the law that this rule did not reach, where it needs motion.

@@ -85,11 +85,15 @@ int check_library(const CommandLine& line) {
 }
 
 // CLI::Range lets nan pass.
-std::string complaint_of_limit(const std::string& found) {
-  double seconds = NAN;
-  const bool is_number = CLI::detail::lexical_cast(found, seconds);
-  if (is_number && seconds >= 0.1 && seconds <= 3600.0) return "";
-  return "found '" + found + "', expected a number from 0.1 to 3600";
+CLI::Validator within(double least, double most) {
+  const std::string range = "from " + CLI::detail::to_string(least) + " to " + CLI::detail::to_string(most);
+  const auto complaint = [=](const std::string& found) -> std::string {
+    double number = NAN;
+    const bool is_number = CLI::detail::lexical_cast(found, number);
+    if (is_number && number >= least && number <= most) return "";
+    return "found '" + found + "', expected a number " + range;
+  };
+  return {complaint, range};
 }
 
 }  // namespace
@@ -108,8 +112,20 @@ std::function<int()> add_options(CLI::App& command) {
   command.add_option("--parameters", line->parameters,
                      "Parameters instead of drawn ones: a JSON object, or a file with one");
   command.add_option("--limit", line->check.limits.seconds, "Seconds for each rule and law")
-      ->check(CLI::Validator(complaint_of_limit, "from 0.1 to 3600"))
+      ->check(within(0.1, 3600.0))
       ->capture_default_str();
+  command
+      .add_option("--fuzz", line->check.fuzz_minutes,
+                  "Minutes for each law with further seeds; a finding is reduced to few nodes and steps")
+      ->check(within(0.01, 10000.0));
+  command
+      .add_option("--nodes", line->check.part.nodes,
+                  "Only these nodes of random motions, as findings name them")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command.add_option("--steps", line->check.part.steps, "Only these steps of random motions")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command.add_flag("--json", line->as_json, "Print an array of objects, one for each rule and law");
   command.add_option("--junit", line->junit, "Also write a report in JUnit's XML");
   command.add_flag("--rules", line->rules, "Print the table of rules");

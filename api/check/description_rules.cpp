@@ -138,25 +138,16 @@ void info_within_description(const Subject& subject) {
     const std::uint32_t frame = ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT;
     if (const std::uint32_t more =
             (info.inputs | info.balance_inputs) & ~(trial.law.inputs | frame | ILAW_INPUT_V_PREVIOUS))
-      throw Finding{"the instance reads inputs " + bits(more),
-                    "inputs of the law, " + bits(trial.law.inputs),
-                    trial.text(),
-                    {}};
+      fail(trial, "the instance reads inputs " + bits(more), "inputs of the law, " + bits(trial.law.inputs));
     if (info.inputs & ~(trial.law.inputs | frame))
-      throw Finding{"the instance reads inputs " + bits(info.inputs),
-                    "inputs of the law, " + bits(trial.law.inputs),
-                    trial.text(),
-                    {}};
+      fail(trial, "the instance reads inputs " + bits(info.inputs),
+           "inputs of the law, " + bits(trial.law.inputs));
     if (const std::uint32_t more = info.capabilities & ~trial.law.capabilities)
-      throw Finding{"the instance has capabilities " + bits(more),
-                    "capabilities of the law, " + bits(trial.law.capabilities),
-                    trial.text(),
-                    {}};
+      fail(trial, "the instance has capabilities " + bits(more),
+           "capabilities of the law, " + bits(trial.law.capabilities));
     if (const std::uint32_t fewer = trial.law.permissions & ~info.permissions)
-      throw Finding{"the instance lacks permissions " + bits(fewer),
-                    "those of the law hold with any parameters",
-                    trial.text(),
-                    {}};
+      fail(trial, "the instance lacks permissions " + bits(fewer),
+           "those of the law hold with any parameters");
     return true;
   });
 }
@@ -165,14 +156,11 @@ void info_frame(const Subject& subject) {
   for_trials(subject, [&](const Trial& trial, Draw&) {
     const bool normal = trial.reads(ILAW_INPUT_NORMAL), tangent = trial.reads(ILAW_INPUT_TANGENT);
     if (normal != trial.setup.global())
-      throw Finding{
-          normal ? "ILAW_INPUT_NORMAL in the local frame" : "no ILAW_INPUT_NORMAL in the global frame",
-          "ILAW_INPUT_NORMAL always, and only, in the global frame",
-          trial.text(),
-          {}};
+      fail(trial,
+           normal ? "ILAW_INPUT_NORMAL in the local frame" : "no ILAW_INPUT_NORMAL in the global frame",
+           "ILAW_INPUT_NORMAL always, and only, in the global frame");
     if (tangent && !trial.setup.has_tangent)
-      throw Finding{
-          "ILAW_INPUT_TANGENT without tangents", "create refuses where it needs tangents", trial.text(), {}};
+      fail(trial, "ILAW_INPUT_TANGENT without tangents", "create refuses where it needs tangents");
     return true;
   });
 }
@@ -198,8 +186,7 @@ void info_same(const Subject& subject) {
     run(trial, draw_script(trial, draw));
     const Trial other(trial.law, trial.setup, trial.values);
     for (const std::string& again : {all_of(trial.instance.info()), all_of(other.info)})
-      if (again != first)
-        throw Finding{"info says " + again, "what it said first, " + first, trial.text(), {}};
+      if (again != first) fail(trial, "info says " + again, "what it said first, " + first);
     return true;
   });
 }
@@ -236,11 +223,8 @@ void amounts_described(const Subject& subject) {
                 return std::strcmp(known->name, amount.name) == 0 &&
                        std::strcmp(known->unit, amount.unit) == 0;
               }))
-            throw Finding{
-                "the instance has an amount '" + std::string(amount.name) + "' [" + amount.unit + "]",
-                "those of the law's description",
-                trial.text(),
-                {}};
+            fail(trial, "the instance has an amount '" + std::string(amount.name) + "' [" + amount.unit + "]",
+                 "those of the law's description");
         }
         return trial.law.amount_count > 0;
       },
@@ -285,11 +269,10 @@ void instances_end(const Subject& subject) {
   for (int k = 0; k < count; ++k) make();
   const std::size_t after = mallinfo2().uordblks + mallinfo2().hblkhd;
   if (after >= before + 16 * count)
-    throw Finding{std::to_string(after - before) + " bytes were kept after " + std::to_string(count) +
-                      " instances were made and destroyed",
-                  "none",
-                  trial.text(),
-                  {}};
+    fail(trial,
+         std::to_string(after - before) + " bytes were kept after " + std::to_string(count) +
+             " instances were made and destroyed",
+         "none");
 #endif
 }
 

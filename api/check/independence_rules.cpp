@@ -9,12 +9,19 @@ namespace ilaw::check {
 namespace {
 
 // The script in this layout gives the bits of the plain one.
-void in_layout(const Subject& subject, const Layout& layout, const char* how) {
-  for_trials_per_node_too(subject, [&](const Trial& trial, Draw& draw) {
-    const Script script = draw_script(trial, draw);
-    expect_same(trial, script, run(trial, script), run(trial, script, layout), how);
-    return true;
-  });
+void in_layout(
+    const Subject& subject, const Layout& layout, const char* how,
+    bool (*applies)(const Trial& trial) = [](const Trial&) { return true; },
+    const char* otherwise = "the law accepted no parameters", const Layout& plain = {}) {
+  for_trials_per_node_too(
+      subject,
+      [&](const Trial& trial, Draw& draw) {
+        if (!applies(trial)) return false;
+        const Script script = draw_script(trial, draw);
+        expect_same(trial, script, run(trial, script, plain), run(trial, script, layout), how);
+        return true;
+      },
+      otherwise);
 }
 
 void by_component(const Subject& subject) {
@@ -33,25 +40,18 @@ void list_64(const Subject& subject) {
     in_layout(subject, {.list = List::of_64_bits, .index_base = base, .spare = 4}, "by a list of 64 bits");
 }
 void in_place(const Subject& subject) {
-  for_trials_per_node_too(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        if (trial.info.state_size == 0) return false;
-        const Script script = draw_script(trial, draw);
-        expect_same(trial, script, run(trial, script), run(trial, script, {.in_place = true}),
-                    "with state_out as state_in");
-        return true;
-      },
-      "the law has no state");
+  in_layout(
+      subject, {.in_place = true}, "with state_out as state_in",
+      [](const Trial& trial) { return trial.info.state_size > 0; }, "the law has no state");
 }
 
 void order(const Subject& subject) {
   for_trials_per_node_too(subject, [](const Trial& trial, Draw& draw) {
     const Script script = draw_script(trial, draw);
-    std::vector<std::size_t> nodes;
-    for (std::size_t i = script[0].count; i-- > 0;) nodes.push_back(i);
+    std::vector<std::size_t> nodes = numbers_below(script[0].count);
+    std::reverse(nodes.begin(), nodes.end());
     expect_part(trial, script, run(trial, script), nodes, "in reverse order");
-    std::swap(nodes[1], nodes[7]);
+    std::rotate(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(nodes.size() / 2), nodes.end());
     expect_part(trial, script, run(trial, script), nodes, "in another order");
     return true;
   });
@@ -59,7 +59,7 @@ void order(const Subject& subject) {
 
 void parts(const Subject& subject) {
   for_trials_per_node_too(subject, [](const Trial& trial, Draw& draw) {
-    const Script script = draw_script(trial, draw, {13, 3});
+    const Script script = draw_script(trial, draw, {13, 3, true});
     const std::vector<Results> all = run(trial, script);
     for (std::size_t i = 0; i < 4; ++i) expect_part(trial, script, all, {3 * i}, "alone");
     expect_part(trial, script, all, {1, 2, 4, 5, 7, 8, 10}, "in a part of the batch");
@@ -70,7 +70,7 @@ void parts(const Subject& subject) {
 // Many nodes take other loops than few.
 void large_batch(const Subject& subject) {
   for_trials_per_node_too(subject, [](const Trial& trial, Draw& draw) {
-    const Script script = draw_script(trial, draw, {300, 1});
+    const Script script = draw_script(trial, draw, {300, 1, true});
     const std::vector<Results> all = run(trial, script);
     for (const std::size_t i : {std::size_t{0}, std::size_t{65}, std::size_t{150}, std::size_t{299}})
       expect_part(trial, script, all, {i}, "alone");
@@ -142,16 +142,9 @@ void shared_value(const Subject& subject) {
 
 // A host of coupled contacts may give it to all of its laws.
 void smooth_unasked(const Subject& subject) {
-  for_trials_per_node_too(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        if (trial.reads(ILAW_INPUT_V_SMOOTH)) return false;
-        const Script script = draw_script(trial, draw);
-        expect_same(trial, script, run(trial, script, {.unasked = false}), run(trial, script),
-                    "with a v_smooth of 123456.75");
-        return true;
-      },
-      "every instance of the law asks for v_smooth");
+  in_layout(subject, {}, "with a v_smooth of 123456.75",
+            [](const Trial& trial) { return !trial.reads(ILAW_INPUT_V_SMOOTH); },
+            "every instance of the law asks for v_smooth", {.unasked = false});
 }
 
 void gap_offset(const Subject& subject) {
@@ -197,10 +190,7 @@ void floats_rounded(const Subject& subject) {
         const Trial exact(trial.law, doubles, trial.values);
         if (exact.info.state_size != trial.info.state_size ||
             exact.info.state_version != trial.info.state_version)
-          throw Finding{"the number type changes the size or the version of the state",
-                        "the same state",
-                        trial.text(),
-                        {}};
+          fail(trial, "the number type changes the size or the version of the state", "the same state");
         const Script script = draw_script(trial, draw);
         const std::vector<Results> all = run(exact, script), found = run(trial, script);
         for (std::size_t k = 0; k < script.size(); ++k) {

@@ -51,9 +51,9 @@ Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-Vector Inputs::vector(const std::vector<double>& of, std::size_t node) const {
+Vector vector_of(const std::vector<double>& values, std::size_t node, std::size_t dimension) {
   Vector a{};
-  for (std::size_t c = 0; c < dimension; ++c) a[c] = of[node * dimension + c];
+  for (std::size_t c = 0; c < dimension; ++c) a[c] = values[node * dimension + c];
   return a;
 }
 void Inputs::set_vector(std::vector<double>& of, std::size_t node, const Vector& value) const {
@@ -113,32 +113,27 @@ bool Inputs::is_out_of_reach(std::size_t node) const {
 }
 
 void Inputs::round_to(const Setup& setup) {
-  for (std::vector<double>* values : {&v_free, &v_smooth, &delassus, &gap, &gap_offset, &v_previous, &area,
-                                      &normal, &tangent, &spin_free, &spin_previous})
-    for (double& value : *values) value = setup.rounded(value);
+  for (const NodeArray& array : node_arrays)
+    for (double& value : this->*array.values) value = setup.rounded(value);
 }
 
 std::vector<NamedArray> Inputs::arrays_of(std::size_t node) const {
   std::vector<NamedArray> arrays{
       {"time, velocity_step, position_step", {time, velocity_step, position_step}}};
-  const auto add = [&](const char* name, const std::vector<double>& values, std::size_t width) {
-    if (values.size() < (node + 1) * width) return;
-    const auto first = values.begin() + static_cast<std::ptrdiff_t>(node * width);
-    arrays.push_back({name, {first, first + static_cast<std::ptrdiff_t>(width)}});
+  const auto add = [&](const char* name, const std::vector<double>& values) {
+    if (!values.empty()) arrays.push_back({name, picked(values, {node}, count)});
   };
-  add("v_free", v_free, dimension);
-  add("v_smooth", v_smooth, dimension);
-  add("delassus", delassus, form_width);
-  add("gap", gap, 1);
-  add("gap_offset", gap_offset, 1);
-  add("v_previous", v_previous, dimension);
-  add("area", area, 1);
-  add("normal", normal, dimension);
-  add("tangent", tangent, dimension);
-  add("spin_free", spin_free, dimension);
-  add("spin_previous", spin_previous, dimension);
-  for (const std::vector<double>& values : per_node) add("per_node_parameters", values, 1);
+  for (const NodeArray& array : node_arrays) add(array.name, this->*array.values);
+  for (const std::vector<double>& values : per_node) add("per_node_parameters", values);
   return arrays;
+}
+
+Inputs Inputs::of_nodes(const std::vector<std::size_t>& nodes) const {
+  Inputs own = *this;
+  own.count = nodes.size();
+  for (const NodeArray& array : node_arrays) own.*array.values = picked(this->*array.values, nodes, count);
+  for (std::vector<double>& values : own.per_node) values = picked(values, nodes, count);
+  return own;
 }
 
 Matrix carried(const Matrix& axes, const Vector& normal) {

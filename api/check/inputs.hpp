@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 namespace ilaw::check {
@@ -20,6 +21,7 @@ Vector sum(const Vector& a, const Vector& b);
 Vector scaled(double factor, const Vector& a);
 Vector cross(const Vector& a, const Vector& b);
 double length(const Vector& a);
+Vector vector_of(const std::vector<double>& values, std::size_t node, std::size_t dimension);
 
 // Velocity and spin, or what an impulse and a moment add to them.
 struct Motion {
@@ -36,7 +38,9 @@ struct Inputs {
       spin_free, spin_previous;
   std::vector<std::vector<double>> per_node;
 
-  Vector vector(const std::vector<double>& of, std::size_t node) const;
+  Vector vector(const std::vector<double>& of, std::size_t node) const {
+    return vector_of(of, node, dimension);
+  }
   void set_vector(std::vector<double>& of, std::size_t node, const Vector& value) const;
   bool spins() const { return form == ILAW_DELASSUS_TRANSVERSE_SPIN; }
   Vector spin(const std::vector<double>& of, std::size_t node) const;  // 0 without spins
@@ -50,9 +54,47 @@ struct Inputs {
   double slack(std::size_t node) const;
   bool is_out_of_reach(std::size_t node) const;
   std::vector<NamedArray> arrays_of(std::size_t node) const;
+  Inputs of_nodes(const std::vector<std::size_t>& nodes) const;
   // To the numbers of the setup, so that a batch has what stands here.
   void round_to(const Setup& setup);
 };
+
+// The arrays of a batch with numbers of each node, but for parameters; asked: by which bit of the inputs.
+struct NodeArray {
+  const char* name;
+  std::vector<double> Inputs::*values;
+  ilaw_input ilaw_batch::*given;
+  std::uint32_t asked = 0;
+};
+inline constexpr std::array node_arrays{
+    NodeArray{"v_free", &Inputs::v_free, &ilaw_batch::v_free},
+    NodeArray{"v_smooth", &Inputs::v_smooth, &ilaw_batch::v_smooth, ILAW_INPUT_V_SMOOTH},
+    NodeArray{"delassus", &Inputs::delassus, &ilaw_batch::delassus},
+    NodeArray{"gap", &Inputs::gap, &ilaw_batch::gap, ILAW_INPUT_GAP},
+    NodeArray{"gap_offset", &Inputs::gap_offset, &ilaw_batch::gap_offset, ILAW_INPUT_GAP},
+    NodeArray{"v_previous", &Inputs::v_previous, &ilaw_batch::v_previous, ILAW_INPUT_V_PREVIOUS},
+    NodeArray{"area", &Inputs::area, &ilaw_batch::area, ILAW_INPUT_AREA},
+    NodeArray{"normal", &Inputs::normal, &ilaw_batch::normal},
+    NodeArray{"tangent", &Inputs::tangent, &ilaw_batch::tangent},
+    NodeArray{"spin_free", &Inputs::spin_free, &ilaw_batch::spin_free},
+    NodeArray{"spin_previous", &Inputs::spin_previous, &ilaw_batch::spin_previous, ILAW_INPUT_V_PREVIOUS}};
+
+inline std::vector<std::size_t> numbers_below(std::size_t count) {
+  std::vector<std::size_t> all(count);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+// The values of some nodes out of those of "count".
+template <class Number>
+std::vector<Number> picked(const std::vector<Number>& values, const std::vector<std::size_t>& nodes,
+                           std::size_t count) {
+  std::vector<Number> own;
+  const std::size_t width = count > 0 ? values.size() / count : 0;
+  for (const std::size_t node : nodes)
+    for (std::size_t c = 0; c < width; ++c) own.push_back(values[node * width + c]);
+  return own;
+}
 
 // The axes carried to another normal by the shortest rotation.
 Matrix carried(const Matrix& axes, const Vector& normal);

@@ -62,24 +62,19 @@ void all_written(const Subject& subject) {
   for_trials(subject, [](const Trial& trial, Draw& draw) {
     const Script script = draw_script(trial, draw, {11, 3});
     for (const Results& found : run(trial, script)) {
-      const auto unwritten = [](const std::vector<double>& values) {
-        for (const double value : values)
-          if (value == sentinel) return true;
-        return false;
+      const auto expect = [&](const char* array, const auto& values, auto unwritten) {
+        if (std::find(values.begin(), values.end(), unwritten) != values.end())
+          fail(trial, script[0], 0, std::string("the array ") + array + " was not written at all nodes",
+               "every component of every node of the batch");
       };
-      const char* array = unwritten(found.impulse)                                             ? "impulse"
-                          : unwritten(found.state)                                             ? "state_out"
-                          : unwritten(found.velocity)                                          ? "velocity"
-                          : unwritten(found.moment)                                            ? "moment"
-                          : unwritten(found.spin)                                              ? "spin"
-                          : unwritten(found.energy)                                            ? "energy"
-                          : std::any_of(found.amounts.begin(), found.amounts.end(), unwritten) ? "amounts"
-                                                                                               : nullptr;
-      for (const std::uint8_t status : found.status)
-        if (status == 99) array = "status";
-      if (array)
-        fail(trial, script[0], 0, std::string("the array ") + array + " was not written at all nodes",
-             "every component of every node of the batch");
+      expect("impulse", found.impulse, sentinel);
+      expect("state_out", found.state, sentinel);
+      expect("velocity", found.velocity, sentinel);
+      expect("moment", found.moment, sentinel);
+      expect("spin", found.spin, sentinel);
+      expect("energy", found.energy, sentinel);
+      for (const std::vector<double>& amount : found.amounts) expect("amounts", amount, sentinel);
+      expect("status", found.status, std::uint8_t{99});
     }
     return true;
   });

@@ -63,6 +63,19 @@ void for_parameters(const Subject& subject, Look look) {
   if (!judged) throw NotJudged{"the law has no such parameter"};
 }
 
+// As for_trials, with each parameter of a trial.
+template <class Look>
+void for_trials_and_parameters(const Subject& subject, Look look, const char* otherwise) {
+  for_trials(
+      subject,
+      [&](const Trial& trial, Draw& draw) {
+        bool judged = false;
+        for (const ilaw_parameter* p : trial.parameters()) judged = look(trial, *p, draw) || judged;
+        return judged;
+      },
+      otherwise);
+}
+
 void unknown(const Subject& subject) {
   const Trial trial = any_trial(subject);
   std::string name = "nobody_has_this";
@@ -186,10 +199,8 @@ void accepted(const Subject& subject) {
     }
     for (const Value& value : ends)
       if (!accepted_somewhere(trial, value, draw))
-        throw Finding{"create refused " + text_of(Values{value}) + " beside 300 sets of other parameters",
-                      "accepted beside some, as its description says",
-                      trial.text(),
-                      {}};
+        fail(trial, "create refused " + text_of(Values{value}) + " beside 300 sets of other parameters",
+             "accepted beside some, as its description says");
     return !ends.empty();
   });
 }
@@ -232,8 +243,10 @@ void needs_spins(const Subject& subject) {
 // Throws where a constant value that is given in another way changes a bit.
 bool expect_no_change(const Trial& trial, const Value& value, Draw& draw) {
   const ilaw_parameter& p = *parameter_of(trial.law, value.name);
-  const double constant = number_of(trial.law, trial.values, p.name);
-  if (std::isinf(constant)) return false;
+  const double exact = number_of(trial.law, trial.values, p.name);
+  // An array of floats has the float next to a default such as 0.1; a table has doubles.
+  const double constant = value.kind == ILAW_KIND_VALUE_PER_NODE ? trial.setup.rounded(exact) : exact;
+  if (std::isinf(constant) || !in_range(p, constant)) return false;
   const Trial plain(trial.law, trial.setup, with(trial.values, number(p, constant)));
   const Values values = with(trial.values, value);
   if (!create(trial.law, trial.setup, values)) return false;  // does not go together with the others
@@ -262,24 +275,21 @@ std::vector<std::vector<TableAxis>> axes_for(const ilaw_parameter& p) {
 }
 
 void table_constant(const Subject& subject) {
-  for_trials(
+  for_trials_and_parameters(
       subject,
-      [](const Trial& trial, Draw& draw) {
+      [](const Trial& trial, const ilaw_parameter& p, Draw& draw) {
+        const double value = number_of(trial.law, trial.values, p.name);
+        if (!may_be_table(p) || !in_range(p, value)) return false;
         bool judged = false;
-        for (const ilaw_parameter* one : trial.parameters()) {
-          const ilaw_parameter& p = *one;
-          const double value = number_of(trial.law, trial.values, p.name);
-          if (!may_be_table(p) || !in_range(p, value)) continue;
-          for (const std::vector<TableAxis>& axes : axes_for(p)) {
-            // Fields need a value: the one that they have anyway.
-            Values values = trial.values;
-            for (const TableAxis& axis : axes)
-              if (const ilaw_parameter* field = parameter_of(trial.law, axis.name))
-                values = with(values, number(*field, number_of(trial.law, trial.values, axis.name)));
-            if (!create(trial.law, trial.setup, values)) continue;
-            const Trial plain(trial.law, trial.setup, values);
-            judged = expect_no_change(plain, table(p, axes, value), draw) || judged;
-          }
+        for (const std::vector<TableAxis>& axes : axes_for(p)) {
+          // Fields need a value: the one that they have anyway.
+          Values values = trial.values;
+          for (const TableAxis& axis : axes)
+            if (const ilaw_parameter* field = parameter_of(trial.law, axis.name))
+              values = with(values, number(*field, number_of(trial.law, trial.values, axis.name)));
+          if (!create(trial.law, trial.setup, values)) continue;
+          const Trial plain(trial.law, trial.setup, values);
+          judged = expect_no_change(plain, table(p, axes, value), draw) || judged;
         }
         return judged;
       },
@@ -320,39 +330,36 @@ bool expect_table_value(const Trial& trial, const Value& given, const std::vecto
 
 // Places and values are exact in binary, so that any way to interpolate gives the same bits.
 void table_linear(const Subject& subject) {
-  for_trials(
+  for_trials_and_parameters(
       subject,
-      [](const Trial& trial, Draw& draw) {
+      [](const Trial& trial, const ilaw_parameter& p, Draw& draw) {
+        if (!may_be_table(p) || p.kind != ILAW_KIND_NUMBER) return false;
+        const double a = static_cast<float>(value_in_table(trial, p)), b = 2.0 * a;
         bool judged = false;
-        for (const ilaw_parameter* one : trial.parameters()) {
-          const ilaw_parameter& p = *one;
-          if (!may_be_table(p) || p.kind != ILAW_KIND_NUMBER) continue;
-          const double a = static_cast<float>(value_in_table(trial, p)), b = 2.0 * a;
-          std::vector<std::string> known;
-          for (std::uint32_t n = 0; n < p.axis_count; ++n)
-            if (p.axes[n] != std::string(p.name) && is_known_axis(trial.law, p.axes[n]))
-              known.emplace_back(p.axes[n]);
-          for (const std::string& axis : known) {
-            const Value over_one{p.name, ILAW_KIND_VALUE_TABLE,       0.0,
-                                 {},     {{axis, {0.25, 0.75, 1.0}}}, {a, b, a}};
-            const std::pair<double, double> places[] = {
-                {0.125, a}, {0.25, a}, {0.5, 0.5 * (a + b)}, {0.75, b}, {1.0, a}, {1.125, a}, {1024.0, a}};
-            for (const auto& [place, value] : places)
-              judged = expect_table_value(trial, over_one, {place}, value, draw) || judged;
-          }
-          if (known.size() < 2) continue;
-          const Value over_two{p.name,
-                               ILAW_KIND_VALUE_TABLE,
-                               0.0,
-                               {},
-                               {{known[0], {0.25, 0.75, 1.0}}, {known[1], {0.25, 0.75}}},
-                               {a, b, a, a, b, a}};
-          const std::pair<std::vector<double>, double> corners[] = {
-              {{0.25, 0.25}, a}, {{0.25, 0.75}, b}, {{0.75, 0.75}, a},
-              {{1.0, 0.25}, b},  {{2.0, 0.75}, a},  {{0.25, 0.5}, 0.5 * (a + b)}};
-          for (const auto& [place, value] : corners)
-            judged = expect_table_value(trial, over_two, place, value, draw) || judged;
+        std::vector<std::string> known;
+        for (std::uint32_t n = 0; n < p.axis_count; ++n)
+          if (p.axes[n] != std::string(p.name) && is_known_axis(trial.law, p.axes[n]))
+            known.emplace_back(p.axes[n]);
+        for (const std::string& axis : known) {
+          const Value over_one{p.name, ILAW_KIND_VALUE_TABLE,       0.0,
+                               {},     {{axis, {0.25, 0.75, 1.0}}}, {a, b, a}};
+          const std::pair<double, double> places[] = {{0.125, a}, {0.25, a},  {0.5, 0.5 * (a + b)}, {0.75, b},
+                                                      {1.0, a},   {1.125, a}, {1024.0, a}};
+          for (const auto& [place, value] : places)
+            judged = expect_table_value(trial, over_one, {place}, value, draw) || judged;
         }
+        if (known.size() < 2) return judged;
+        const Value over_two{p.name,
+                             ILAW_KIND_VALUE_TABLE,
+                             0.0,
+                             {},
+                             {{known[0], {0.25, 0.75, 1.0}}, {known[1], {0.25, 0.75}}},
+                             {a, b, a, a, b, a}};
+        const std::pair<std::vector<double>, double> corners[] = {
+            {{0.25, 0.25}, a}, {{0.25, 0.75}, b}, {{0.75, 0.75}, a},
+            {{1.0, 0.25}, b},  {{2.0, 0.75}, a},  {{0.25, 0.5}, 0.5 * (a + b)}};
+        for (const auto& [place, value] : corners)
+          judged = expect_table_value(trial, over_two, place, value, draw) || judged;
         return judged;
       },
       "no parameter may be a table over time or a field");
@@ -471,63 +478,50 @@ void table_limit(const Subject& subject) {
 }
 
 void field_per_node(const Subject& subject) {
-  for_trials(
+  for_trials_and_parameters(
       subject,
-      [](const Trial& trial, Draw&) {
-        bool judged = false;
-        for (const ilaw_parameter* one : trial.parameters()) {
-          const ilaw_parameter& p = *one;
-          if (!has(p, ILAW_FLAG_FIELD)) continue;
-          const SetupStruct given(trial.setup, with(trial.values, {p.name, ILAW_KIND_VALUE_PER_NODE}));
-          Refusal refusal{};
-          if (!create(trial.law, given.given, refusal))
-            throw Finding{
-                "create refused the field '" + std::string(p.name) + "' per node: " + refusal.message,
-                "an instance: hosts give a field that they have per node",
-                trial.text(),
-                {}};
-          judged = true;
-        }
-        return judged;
+      [](const Trial& trial, const ilaw_parameter& p, Draw&) {
+        if (!has(p, ILAW_FLAG_FIELD)) return false;
+        const SetupStruct given(trial.setup, with(trial.values, {p.name, ILAW_KIND_VALUE_PER_NODE}));
+        Refusal refusal{};
+        if (!create(trial.law, given.given, refusal))
+          fail(trial, "create refused the field '" + std::string(p.name) + "' per node: " + refusal.message,
+               "an instance: hosts give a field that they have per node");
+        return true;
       },
       "the law has no fields");
 }
 
 // A value per node that is out of range is bad input at its node.
 void node_range(const Subject& subject) {
-  for_trials(
+  for_trials_and_parameters(
       subject,
-      [](const Trial& trial, Draw& draw) {
-        bool judged = false;
-        for (const ilaw_parameter* one : trial.parameters()) {
-          const ilaw_parameter& p = *one;
-          const Values values = with(trial.values, {p.name, ILAW_KIND_VALUE_PER_NODE});
-          const double good = number_of(trial.law, trial.values, p.name);
-          if (!may_be_per_node(p) || !std::isfinite(good)) continue;
-          if (!create(trial.law, trial.setup, values)) continue;
-          const Trial varied(trial.law, trial.setup, values);
-          Script script = draw_script(varied, draw, {7, 1}, true);
-          std::vector<double>& own = script[0].per_node[0];
-          std::fill(own.begin(), own.end(), good);
-          Heap heap;
-          Arrays arrays(varied, script[0], {}, heap);
-          if (arrays.initialise(script[0]) != ILAW_OK) continue;
-          const std::vector<double> state = arrays.state();
-          if (arrays.evaluate(script[0]).code != ILAW_OK) continue;
-          for (const double bad :
-               {p.minimum - 1.0, std::nan(""), has(p, ILAW_FLAG_ALLOWS_INFINITY) ? -infinity : infinity}) {
-            own[4] = bad;
-            arrays.set_state(state);
-            const Results found = arrays.evaluate(script[0]);
-            if (found.code != ILAW_BAD_NODES || found.report.first_bad_node != 4)
-              fail(varied, script[0], 4,
-                   "evaluate returned " + std::to_string(found.code) + ", first bad node " +
-                       std::to_string(found.report.first_bad_node),
-                   "ILAW_BAD_NODES (1), node 4");
-          }
-          judged = true;
+      [](const Trial& trial, const ilaw_parameter& p, Draw& draw) {
+        const Values values = with(trial.values, {p.name, ILAW_KIND_VALUE_PER_NODE});
+        const double good = number_of(trial.law, trial.values, p.name);
+        if (!may_be_per_node(p) || !std::isfinite(good)) return false;
+        if (!create(trial.law, trial.setup, values)) return false;
+        const Trial varied(trial.law, trial.setup, values);
+        Script script = draw_script(varied, draw, {7, 1}, true);
+        std::vector<double>& own = script[0].per_node[0];
+        std::fill(own.begin(), own.end(), good);
+        Heap heap;
+        Arrays arrays(varied, script[0], {}, heap);
+        if (arrays.initialise(script[0]) != ILAW_OK) return false;
+        const std::vector<double> state = arrays.state();
+        if (arrays.evaluate(script[0]).code != ILAW_OK) return false;
+        for (const double bad :
+             {p.minimum - 1.0, std::nan(""), has(p, ILAW_FLAG_ALLOWS_INFINITY) ? -infinity : infinity}) {
+          own[4] = bad;
+          arrays.set_state(state);
+          const Results found = arrays.evaluate(script[0]);
+          if (found.code != ILAW_BAD_NODES || found.report.first_bad_node != 4)
+            fail(varied, script[0], 4,
+                 "evaluate returned " + std::to_string(found.code) + ", first bad node " +
+                     std::to_string(found.report.first_bad_node),
+                 "ILAW_BAD_NODES (1), node 4");
         }
-        return judged;
+        return true;
       },
       "no parameter may be given per node");
 }

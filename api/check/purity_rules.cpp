@@ -5,6 +5,7 @@
 #include "check/sandbox.hpp"
 #include "check/watch.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <thread>
 
@@ -71,7 +72,7 @@ void instances_apart(const Subject& subject) {
 
 void threads(const Subject& subject) {
   for_trials(subject, [](const Trial& trial, Draw& draw) {
-    const Script script = draw_script(trial, draw, {13, 12});
+    const Script script = draw_script(trial, draw, {13, 12, true});
     const std::vector<Results> expected = run(trial, script);
     constexpr std::size_t count = 3;
     std::vector<std::vector<Results>> found(count);
@@ -96,10 +97,8 @@ void globals(const Subject& subject) {
         if (!before.found()) return false;
         run(trial, script);
         if (const std::size_t changed = before.changed())
-          throw Finding{"evaluate changed " + std::to_string(changed) + " bytes of the library's globals",
-                        "none",
-                        trial.text(),
-                        {}};
+          fail(trial, "evaluate changed " + std::to_string(changed) + " bytes of the library's globals",
+               "none");
         return true;
       },
       "the library's globals were not found");
@@ -125,10 +124,10 @@ void steps_change(const Subject& subject) {
 // A second half that starts from stored state, in a process that saw nothing of the first.
 void restart(const Subject& subject) {
   for_trials(subject, [](const Trial& trial, Draw& draw) {
-    const Script script = draw_script(trial, draw, {13, 8});
+    const Script script = draw_script(trial, draw, {13, 8, true});
     const Trial first(trial.law, trial.setup, trial.values);
     std::vector<Results> expected = run(first, script);
-    const std::size_t half = script.size() / 2;
+    const std::size_t half = std::max<std::size_t>(1, script.size() / 2);
     const Trial second(trial.law, trial.setup, trial.values);
     Heap heap;
     Arrays arrays(second, script[0], {}, heap);

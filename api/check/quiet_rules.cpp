@@ -19,7 +19,7 @@ namespace {
 void watch(const Subject& subject, Forbidden kind) {
   for_trials(subject, [&](const Trial& trial, Draw& draw) {
     Script script = draw_script(trial, draw);
-    script[2].v_free[0] = std::nan("");  // bad input too
+    script.back().v_free[0] = std::nan("");  // bad input too
     Heap heap;
     Arrays arrays(trial, script[0], {}, heap);
     arrays.initialise(script[0]);
@@ -76,7 +76,7 @@ void system_calls(const Subject& subject) {
 void prints(const Subject& subject) {
   for_trials(subject, [](const Trial& trial, Draw& draw) {
     Script script = draw_script(trial, draw);
-    script[1].v_free[0] = std::nan("");
+    script.back().v_free[0] = std::nan("");
     run(trial, script);
     create(trial.law, trial.setup, with(trial.values, {"nobody_has_this", ILAW_KIND_VALUE_NUMBER, 1.0}));
     return true;

@@ -16,14 +16,17 @@ namespace {
 
 using nlohmann::ordered_json;
 
-const Rule& rule_of(const Outcome& outcome) {
-  return *std::find_if(rules().begin(), rules().end(),
-                       [&](const Rule& rule) { return outcome.rule == rule.id; });
+// An option with a list of numbers; empty without any.
+std::string text_of_list(const char* option, const std::vector<std::size_t>& list) {
+  std::string text;
+  for (const std::size_t one : list) text += (text.empty() ? option : ",") + std::to_string(one);
+  return text;
 }
 
 std::string repeat(const Checked& checked, const Outcome& outcome) {
   return "ilaw check " + checked.file + (outcome.law.empty() ? "" : " --law " + outcome.law) + " --only " +
          outcome.rule + " --seed " + std::to_string(outcome.seed) +
+         text_of_list(" --nodes ", outcome.part.nodes) + text_of_list(" --steps ", outcome.part.steps) +
          (checked.parameters.empty() ? "" : " --parameters '" + checked.parameters + "'");
 }
 
@@ -113,7 +116,7 @@ std::string text_of(const Checked& checked) {
   std::string text;
   for (const Outcome& outcome : checked.outcomes) {
     if (outcome.verdict != Verdict::broken) continue;
-    const Rule& rule = rule_of(outcome);
+    const Rule& rule = rule_of(outcome.rule);
     text += (outcome.law.empty() ? "" : outcome.law + ": ") + rule.id + ": " + rule.required + " (" +
             rule.source + ")\n" + text_of_finding(checked, outcome, "  ");
   }
@@ -127,7 +130,7 @@ std::string text_of(const Checked& checked) {
 std::string json_of(const Checked& checked) {
   ordered_json all = ordered_json::array();
   for (const Outcome& outcome : checked.outcomes) {
-    const Rule& rule = rule_of(outcome);
+    const Rule& rule = rule_of(outcome.rule);
     ordered_json one = {{"rule", rule.id}, {"law", outcome.law}};
     one["result"] = outcome.verdict == Verdict::passed   ? "passed"
                     : outcome.verdict == Verdict::broken ? "broken"
@@ -174,7 +177,7 @@ std::string junit_of(const Checked& checked) {
     tinyxml2::XMLElement* failure = one->InsertNewChildElement("failure");
     failure->SetAttribute("message", outcome.finding.seen.c_str());
     failure->SetText(
-        (std::string(rule_of(outcome).required) + "\n" + text_of_finding(checked, outcome, "")).c_str());
+        (std::string(rule_of(outcome.rule).required) + "\n" + text_of_finding(checked, outcome, "")).c_str());
   }
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);

@@ -16,7 +16,7 @@ void for_nodes(const Subject& subject, bool (*applies)(const Trial& trial), Look
       subject,
       [&](const Trial& trial, Draw& draw) {
         if (!applies(trial)) return false;
-        const Script script = draw_script(trial, draw, {17, 8});
+        const Script script = draw_script(trial, draw, {17, 8, true});
         const std::vector<Results> results = run(trial, script);
         for (std::size_t k = 0; k < script.size(); ++k)
           for (std::size_t i = 0; i < script[k].count; ++i)
@@ -187,7 +187,7 @@ void energy_rupture(const Subject& subject) {
       subject,
       [](const Trial& trial, Draw& draw) {
         if (!trial.writes(ILAW_OUTPUT_ENERGY)) return false;
-        const Script script = draw_script(trial, draw, {17, 8});
+        const Script script = draw_script(trial, draw, {17, 8, true});
         const std::vector<Results> results = run(trial, script);
         const std::size_t size = trial.info.state_size;
         for (std::size_t k = 1; k < script.size(); ++k)
@@ -312,12 +312,7 @@ void step_limits(const Subject& subject) {
              "code " + std::to_string(found.code) + " with steps of " + text_of(step) +
                  " s: " + (found.report.reason ? found.report.reason : "no reason"),
              "ILAW_OK for any step > 0");
-      for (std::size_t k = 0; k < found.impulse.size(); ++k)
-        if (!std::isfinite(found.impulse[k]))
-          fail(trial, in, k / in.dimension, "impulse " + text_of(found.impulse[k]), "a finite impulse");
-      for (std::size_t k = 0; k < found.moment.size(); ++k)
-        if (!std::isfinite(found.moment[k]))
-          fail(trial, in, k / in.dimension, "moment " + text_of(found.moment[k]), "a finite moment");
+      expect_finite(trial, in, found);
     }
     return true;
   });
@@ -346,7 +341,7 @@ void held_bonds(const Subject& subject) {
       subject,
       [](const Trial& trial, Draw& draw) {
         if (!trial.can(ILAW_CAN_HOLD_BONDS) || !trial.writes(ILAW_OUTPUT_STATUS)) return false;
-        const Script script = draw_script(trial, draw, {17, 8});
+        const Script script = draw_script(trial, draw, {17, 8, true});
         Heap heap;
         Arrays arrays(trial, script[0], {}, heap);
         arrays.initialise(script[0]);
@@ -384,7 +379,7 @@ std::vector<Rule> result_rules() {
        "Without ILAW_CAN_ADHERE there is no tangential impulse and no moment where r_N = 0.",
        "ilaw.h, ILAW_CAN_ADHERE", Needs::motion, friction_needs_pressure},
       {"friction-cone",
-       "If a law has a coefficient called friction (and friction_2), |r_T| of a status stick or "
+       "If a law has a coefficient called friction (and friction_2), the length of r_T of a status stick or "
        "slip is at most the larger one times r_N.",
        "check.md, Names with a meaning", Needs::motion, cone},
       {"status-meaning",

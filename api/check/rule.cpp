@@ -25,6 +25,7 @@ bool look_at_trials(const Subject& subject, const Look& look) {
     const std::optional<Values> values = values_of(subject, setup, draw);
     if (!values) continue;
     const Trial trial(subject.law, setup, *values);
+    forget_states();
     set_setting(trial.text());
     judged = look(trial, draw) || judged;
   }
@@ -49,6 +50,10 @@ const std::vector<Rule>& rules() {
     return made;
   }();
   return all;
+}
+
+const Rule& rule_of(const std::string& id) {
+  return *std::find_if(rules().begin(), rules().end(), [&](const Rule& rule) { return id == rule.id; });
 }
 
 void for_trials(const Subject& subject, const Look& look, const char* otherwise) {

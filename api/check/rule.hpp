@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace ilaw::check {
@@ -43,6 +44,7 @@ inline constexpr const char* creates_id = "setups-served";
 inline constexpr const char* returns_id = "functions-return";
 
 const std::vector<Rule>& rules();
+const Rule& rule_of(const std::string& id);  // of the rules
 
 std::vector<Rule> description_rules();
 std::vector<Rule> parameter_rules();

@@ -6,6 +6,7 @@
 #include "check/memory.hpp"
 #include "check/script.hpp"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -43,7 +44,10 @@ struct Results {
   std::vector<double> moment, spin;  // empty where the form of H has no spins
 
   Vector moment_at(std::size_t node) const;  // 0 without spins
-  Vector vector(const std::vector<double>& of, std::size_t node, std::size_t dimension) const;
+  Results of_nodes(const std::vector<std::size_t>& which) const;
+  Vector vector(const std::vector<double>& of, std::size_t node, std::size_t dimension) const {
+    return vector_of(of, node, dimension);
+  }
 };
 
 // The arrays of a batch for a trial.
@@ -82,8 +86,7 @@ class Arrays {
   std::vector<std::size_t> places_;  // in the arrays, of each node of the batch
   ilaw_batch batch_{};
   ilaw_report report_{};
-  Field v_free_, v_smooth_, delassus_, gap_, gap_offset_, v_previous_, area_, normal_, tangent_, spin_free_,
-      spin_previous_;
+  std::array<Field, node_arrays.size()> inputs_;
   Field state_in_, state_out_, impulse_, velocity_, energy_, moment_, spin_;
   std::vector<Field> per_node_, amounts_;
   ilaw_input* per_node_inputs_ = nullptr;
@@ -97,6 +100,9 @@ class Arrays {
 // Results of all steps, from the first state on.
 std::vector<Results> run(const Trial& trial, const Script& script, const Layout& layout = {});
 std::vector<Results> run(const Trial& trial, const Script& script, const Layout& layout, Memory& memory);
+
+// Forgets the states of the trial before, which findings name.
+void forget_states();
 
 // The first array in which two results differ in a bit, at which node, with both values. "what" are the bits
 // of ILAW_OUTPUT_* that both have.
@@ -112,9 +118,13 @@ void expect_same(const Trial& trial, const Script& script, const std::vector<Res
                  std::uint32_t outputs = all_outputs);
 // Throws the finding where some nodes of a script get other results in a batch of their own than among "all".
 void expect_part(const Trial& trial, const Script& script, const std::vector<Results>& all,
-                 const std::vector<std::size_t>& nodes, const char* how);
+                 std::vector<std::size_t> nodes, const std::string& how);
+// Throws a finding of a trial; with the inputs of a node, and its state before the last call with them.
+[[noreturn]] void fail(const Trial& trial, const std::string& seen, const std::string& allowed);
 [[noreturn]] void fail(const Trial& trial, const Inputs& in, std::size_t node, const std::string& seen,
                        const std::string& allowed);
+// Throws the finding where an impulse or a moment is not finite, or overflows floats in sums.
+void expect_finite(const Trial& trial, const Inputs& in, const Results& found);
 std::string text_of(double value);
 std::string text_of(const Vector& a, std::size_t dimension);
 

@@ -145,7 +145,20 @@ void draw_motion(Inputs& in, bool isotropic, bool without_force, bool is_path, D
   }
 }
 
+Part kept;
+
+// Those of "chosen" that are below count; all where none was chosen, the first where none is left.
+std::vector<std::size_t> chosen_below(std::size_t count, const std::vector<std::size_t>& chosen) {
+  std::vector<std::size_t> all = numbers_below(count);
+  if (chosen.empty()) return all;
+  std::erase_if(all,
+                [&](std::size_t k) { return std::find(chosen.begin(), chosen.end(), k) == chosen.end(); });
+  return all.empty() ? std::vector<std::size_t>{0} : all;
+}
+
 }  // namespace
+
+void keep_part(const Part& part) { kept = part; }
 
 void draw_smooth(Inputs& in, Draw& draw) {
   in.v_smooth = in.v_free;
@@ -210,7 +223,11 @@ Script draw_script(const Trial& trial, Draw& draw, const ScriptSize& size, bool 
     in.round_to(trial.setup);
     script.push_back(in);
   }
-  return script;
+  if (!size.may_shrink) return script;
+  Script part;
+  const std::vector<std::size_t> nodes = chosen_below(size.nodes, kept.nodes);
+  for (const std::size_t k : chosen_below(size.steps, kept.steps)) part.push_back(script[k].of_nodes(nodes));
+  return part;
 }
 
 }  // namespace ilaw::check

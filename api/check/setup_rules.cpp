@@ -14,13 +14,10 @@ namespace {
 void expect_unserved(const Trial& trial, const ilaw_setup& setup, const std::string& what) {
   set_setting(what + "; " + text_of(trial.values));
   Refusal refusal{};
-  if (create(trial.law, setup, refusal))
-    throw Finding{"create accepted " + what, "a refusal", trial.text(), {}};
+  if (create(trial.law, setup, refusal)) fail(trial, "create accepted " + what, "a refusal");
   if (refusal.code != ILAW_UNSUPPORTED)
-    throw Finding{"create refused " + what + " with code " + std::to_string(refusal.code),
-                  "ILAW_UNSUPPORTED (-3)",
-                  trial.text(),
-                  {}};
+    fail(trial, "create refused " + what + " with code " + std::to_string(refusal.code),
+         "ILAW_UNSUPPORTED (-3)");
 }
 
 void setup_unserved(const Subject& subject) {
@@ -71,11 +68,10 @@ void create_id(const Subject& subject) {
     calling("create");
     const std::int32_t code = subject.law.create(id.c_str(), &given.given, &made, nullptr, 0);
     if (code >= 0 || made)
-      throw Finding{"create returned " + std::to_string(code) + (made ? " and an instance" : "") +
-                        " for the id '" + id + "'",
-                    "a refusal: the library has no such law",
-                    trial.text(),
-                    {}};
+      fail(trial,
+           "create returned " + std::to_string(code) + (made ? " and an instance" : "") + " for the id '" +
+               id + "'",
+           "a refusal: the library has no such law");
   }
 }
 
@@ -101,11 +97,9 @@ void sizes_short(const Subject& subject) {
   const Trial trial = any_trial(subject);
   const auto expect = [&](std::int32_t code, const std::string& what) {
     if (code != ILAW_INVALID_ARGUMENT)
-      throw Finding{
-          what + " returned " + std::to_string(code) + " for a struct smaller than that of version 1.0",
-          "ILAW_INVALID_ARGUMENT (-1)",
-          trial.text(),
-          {}};
+      fail(trial,
+           what + " returned " + std::to_string(code) + " for a struct smaller than that of version 1.0",
+           "ILAW_INVALID_ARGUMENT (-1)");
   };
   SetupStruct given(trial.setup, trial.values);
   for (const std::uint32_t size : {0U, static_cast<std::uint32_t>(ILAW_SETUP_SIZE_1_0) - 1}) {
@@ -155,15 +149,11 @@ void sizes_long(const Subject& subject) {
     Longer<ilaw_setup> setup(given.given);
     const Script script = draw_script(trial, draw, {3, 1});
     if (const std::int32_t code = code_of(trial, &setup.known); code != ILAW_OK)
-      throw Finding{
-          "create returned " + std::to_string(code) + " for a longer setup", "ILAW_OK", trial.text(), {}};
+      fail(trial, "create returned " + std::to_string(code) + " for a longer setup", "ILAW_OK");
     Longer<ilaw_instance_info> info(ilaw_instance_info{});
     calling("info");
     if (trial.law.info(trial.instance.get(), &info.known) != ILAW_OK || !(knows_more || info.is_untouched()))
-      throw Finding{"info wrote beyond the known struct, or refused a longer one",
-                    "members that it knows",
-                    trial.text(),
-                    {}};
+      fail(trial, "info wrote beyond the known struct, or refused a longer one", "members that it knows");
     Heap heap;
     Arrays arrays(trial, script[0], {}, heap);
     arrays.initialise(script[0]);
@@ -173,10 +163,8 @@ void sizes_long(const Subject& subject) {
     Longer<ilaw_report> report(blank);
     const std::int32_t code = trial.instance.evaluate(batch.known, &report.known);
     if (code < 0 || !(knows_more || report.is_untouched()))
-      throw Finding{"evaluate returned " + std::to_string(code) + ", or wrote beyond the known report",
-                    "ILAW_OK for structs of a later version",
-                    trial.text(),
-                    {}};
+      fail(trial, "evaluate returned " + std::to_string(code) + ", or wrote beyond the known report",
+           "ILAW_OK for structs of a later version");
     return true;
   });
 }
@@ -223,24 +211,16 @@ void refusal_message(const Subject& subject) {
     const std::int32_t code =
         trial.law.create(trial.law.id, &given.given, &made, size ? text.data() : nullptr, size);
     if (code == ILAW_OK) throw NotJudged{"the law accepts any parameter"};
-    if (made) throw Finding{"a refusal left *instance set", "null", trial.text(), {}};
+    if (made) fail(trial, "a refusal left *instance set", "null");
     const auto beyond = std::find_if(text.begin() + static_cast<std::ptrdiff_t>(size), text.end(),
                                      [](char c) { return c != '#'; });
     if (beyond != text.end())
-      throw Finding{"create wrote beyond the " + std::to_string(size) + " bytes of the message",
-                    "within them",
-                    trial.text(),
-                    {}};
+      fail(trial, "create wrote beyond the " + std::to_string(size) + " bytes of the message", "within them");
     if (size > 0 && !std::memchr(text.data(), 0, size))
-      throw Finding{"the message has no zero at its end",
-                    "one within " + std::to_string(size) + " bytes",
-                    trial.text(),
-                    {}};
+      fail(trial, "the message has no zero at its end", "one within " + std::to_string(size) + " bytes");
     if (size == 512 && (text[0] == '\0' || !is_line(text.data())))
-      throw Finding{"the message is \"" + std::string(text.data()) + "\"",
-                    "one line that says which parameter, its value and what is allowed",
-                    trial.text(),
-                    {}};
+      fail(trial, "the message is \"" + std::string(text.data()) + "\"",
+           "one line that says which parameter, its value and what is allowed");
   }
 }
 

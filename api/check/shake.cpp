@@ -15,17 +15,11 @@ constexpr double size_of_zero = 1e-6;
 
 Inputs Shake::operator()(Inputs in) {
   for (std::size_t i = 0; i < in.count; ++i) {
-    const double speed = length(in.vector(in.v_free, i));
-    for (std::size_t c = 0; c < in.dimension; ++c) in.v_free[i * in.dimension + c] += rounding_of(speed);
-    if (!in.v_smooth.empty()) {
-      const double smooth_speed = length(in.vector(in.v_smooth, i));
+    for (std::vector<double>* vectors : {&in.v_free, &in.v_smooth, &in.spin_free}) {
+      if (vectors->empty()) continue;
+      const double size_of_vector = length(in.vector(*vectors, i));
       for (std::size_t c = 0; c < in.dimension; ++c)
-        in.v_smooth[i * in.dimension + c] += rounding_of(smooth_speed);
-    }
-    if (in.spins()) {
-      const double turning = length(in.vector(in.spin_free, i));
-      for (std::size_t c = 0; c < in.dimension; ++c)
-        in.spin_free[i * in.dimension + c] += rounding_of(turning);
+        (*vectors)[i * in.dimension + c] += rounding_of(size_of_vector);
     }
     const double factor = 1.0 + size() * draw_.within(-1.0, 1.0);
     for (std::size_t c = 0; c < in.form_width; ++c) in.delassus[i * in.form_width + c] *= factor;

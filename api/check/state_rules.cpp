@@ -67,7 +67,7 @@ void skip_fresh(const Subject& subject) {
       subject,
       [](const Trial& trial, Draw& draw) {
         if (!trial.permits(ILAW_MAY_SKIP_FRESH) || !trial.reads(ILAW_INPUT_GAP)) return false;
-        Script script = draw_script(trial, draw, {40, 3}, true);
+        Script script = draw_script(trial, draw, {40, 3, true}, true);
         Heap heap;
         Arrays arrays(trial, script[0], {}, heap);
         for (Inputs& in : script) {
@@ -91,7 +91,7 @@ void skip_free(const Subject& subject) {
         if (!trial.permits(ILAW_MAY_SKIP_FREE) || !trial.writes(ILAW_OUTPUT_STATUS) ||
             !trial.reads(ILAW_INPUT_GAP))
           return false;
-        Script script = draw_script(trial, draw, {30, 16}, true);
+        Script script = draw_script(trial, draw, {30, 16, true}, true);
         Heap heap;
         Arrays arrays(trial, script[0], {}, heap);
         arrays.initialise(script[0]);

@@ -145,6 +145,14 @@ bool keeps_axes(const Trial& trial) {
   return false;
 }
 
+// A setup in the axes of the host, which makes a diagonal H full.
+Setup host_of(Setup own, bool has_tangent) {
+  if (own.form == ILAW_DELASSUS_DIAGONAL) own.form = ILAW_DELASSUS_FULL;
+  own.frame = ILAW_FRAME_GLOBAL;
+  own.has_tangent = has_tangent ? 1 : 0;
+  return own;
+}
+
 std::vector<Matrix> draw_axes_of(const Script& script, Draw& draw) {
   std::vector<Matrix> axes;
   for (std::size_t i = 0; i < script[0].count; ++i) axes.push_back(draw_axes(script[0].dimension, draw));
@@ -175,9 +183,7 @@ void frame_indifference(const Subject& subject) {
       [](const Trial& trial, Draw& draw) {
         const Setup& own = trial.setup;
         if (own.global()) return false;
-        const std::uint32_t form =
-            own.form == ILAW_DELASSUS_DIAGONAL ? std::uint32_t{ILAW_DELASSUS_FULL} : own.form;
-        const Setup host{own.dimension, form, ILAW_FRAME_GLOBAL, own.dimension == 3 ? 1U : 0U, own.numbers};
+        const Setup host = host_of(own, own.dimension == 3);
         const Script script = draw_script(trial, draw);
         return expect_indifferent(trial, host, script, draw_axes_of(script, draw));
       },
@@ -242,10 +248,8 @@ void history_carried(const Subject& subject) {
       [](const Trial& trial, Draw& draw) {
         const Setup& own = trial.setup;
         if (own.global() || own.dimension == 1 || trial.info.state_size == 0) return false;
-        const std::uint32_t form =
-            own.form == ILAW_DELASSUS_DIAGONAL ? std::uint32_t{ILAW_DELASSUS_FULL} : own.form;
-        const Setup host{own.dimension, form, ILAW_FRAME_GLOBAL, 0, own.numbers};
-        if (!(trial.law.delassus_forms & form) || !(trial.law.frames & ILAW_FRAME_GLOBAL) ||
+        const Setup host = host_of(own, false);
+        if (!(trial.law.delassus_forms & host.form) || !(trial.law.frames & ILAW_FRAME_GLOBAL) ||
             !create(trial.law, host, trial.values))
           return false;
         expect_carried(trial, Trial(trial.law, host, trial.values), draw);
@@ -330,7 +334,7 @@ void isotropy(const Subject& subject) {
         const Setup& own = trial.setup;
         if (own.global() || own.dimension != 3) return false;
         if (own.form == ILAW_DELASSUS_DIAGONAL || own.form == ILAW_DELASSUS_FULL) return false;
-        const Setup host{3, own.form, ILAW_FRAME_GLOBAL, 0, own.numbers};
+        const Setup host = host_of(own, false);
         if (!create(trial.law, host, trial.values)) return false;
         const double angle = draw.within(0.2, 1.3), c = std::cos(angle), s = std::sin(angle);
         const Matrix spin{Vector{1.0, 0.0, 0.0}, {0.0, c, s}, {0.0, -s, c}},
@@ -371,12 +375,10 @@ Inputs in_units(Inputs in, const Units& units) {
   const auto scale = [](std::vector<double>& values, double factor) {
     for (double& value : values) value *= factor;
   };
-  scale(in.v_free, units.velocity());
-  scale(in.v_smooth, units.velocity());
-  scale(in.v_previous, units.velocity());
+  for (std::vector<double>* values : {&in.v_free, &in.v_smooth, &in.v_previous})
+    scale(*values, units.velocity());
   scale(in.delassus, 1.0 / units.mass);
-  scale(in.spin_free, 1.0 / units.time);
-  scale(in.spin_previous, 1.0 / units.time);
+  for (std::vector<double>* values : {&in.spin_free, &in.spin_previous}) scale(*values, 1.0 / units.time);
   for (std::size_t i = 0; in.spins() && i < in.count; ++i) {  // k has 1/(kg m), j 1/(kg m^2)
     double* values = &in.delassus[i * in.form_width];
     values[2] /= units.length;
@@ -388,8 +390,6 @@ Inputs in_units(Inputs in, const Units& units) {
   for (double* time : {&in.time, &in.velocity_step, &in.position_step}) *time *= units.time;
   return in;
 }
-
-Vector scaled_down(const Vector& a, double unit) { return {a[0] / unit, a[1] / unit, a[2] / unit}; }
 
 void other_units(const Subject& subject) {
   const Units units{0x1p+20, 0x1p-12, 0x1p+7};
@@ -404,8 +404,8 @@ void other_units(const Subject& subject) {
         for (const Inputs& in : script) other.push_back(in_units(in, units));
         expect_image(scaled, script, run(trial, script), run(scaled, other), "in other units",
                      [&](std::size_t, const Action& a) {
-                       return Action{scaled_down(a.impulse, units.impulse()),
-                                     scaled_down(a.moment, units.impulse() * units.length)};
+                       return Action{check::scaled(1.0 / units.impulse(), a.impulse),
+                                     check::scaled(1.0 / (units.impulse() * units.length), a.moment)};
                      });
         return true;
       },

@@ -21,118 +21,44 @@
 #include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <iterator>
 #include <memory>
+#include <sstream>
 #include <utility>
 
 namespace ilaw::check {
 namespace {
 
-struct Named {
-  Forbidden kind;
-  const char* name;  // of the function; with a '*' at its end, of all that begin so
-};
+// The functions of each kind, in the order of Forbidden; a '*' at its end stands for all that begin so.
+constexpr std::array forbidden{
+    "malloc calloc realloc free aligned_alloc posix_memalign memalign strdup mmap* _Znw* _Zna* "
+    "_Zdl* _Zda* _ZNSt7__cxx1112basic_string*",
+    "pthread_mutex_* pthread_rwlock_* pthread_spin_* pthread_cond_* pthread_once pthread_create "
+    "sem_* mtx_* thrd_* __cxa_guard_acquire GOMP_* _ZNSt6thread*",
+    "printf fprintf vfprintf __printf_chk __fprintf_chk puts putchar fputs fputc fwrite fread "
+    "fgets fflush fopen* fclose open* read write perror syslog getenv setenv system "
+    "_ZSt16__ostream_insert* _ZStlsISt11char_traits* _ZNSo*",
+    "time clock clock_gettime gettimeofday timespec_get sleep usleep nanosleep _ZNSt6chrono* rand "
+    "rand_r random* drand48* lrand48* getrandom arc4random*",
+    "exit _exit abort raise kill signal sigaction _setjmp longjmp"};
+constexpr std::size_t most_names = 32;
+std::vector<std::string> watched;  // names of the kind that is watched
 
-constexpr std::array named{Named{Forbidden::allocation, "malloc"},
-                           Named{Forbidden::allocation, "calloc"},
-                           Named{Forbidden::allocation, "realloc"},
-                           Named{Forbidden::allocation, "free"},
-                           Named{Forbidden::allocation, "aligned_alloc"},
-                           Named{Forbidden::allocation, "posix_memalign"},
-                           Named{Forbidden::allocation, "memalign"},
-                           Named{Forbidden::allocation, "strdup"},
-                           Named{Forbidden::allocation, "mmap*"},
-                           Named{Forbidden::allocation, "_Znw*"},
-                           Named{Forbidden::allocation, "_Zna*"},
-                           Named{Forbidden::allocation, "_Zdl*"},
-                           Named{Forbidden::allocation, "_Zda*"},
-                           Named{Forbidden::allocation, "_ZNSt7__cxx1112basic_string*"},
-                           Named{Forbidden::lock, "pthread_mutex_*"},
-                           Named{Forbidden::lock, "pthread_rwlock_*"},
-                           Named{Forbidden::lock, "pthread_spin_*"},
-                           Named{Forbidden::lock, "pthread_cond_*"},
-                           Named{Forbidden::lock, "pthread_once"},
-                           Named{Forbidden::lock, "pthread_create"},
-                           Named{Forbidden::lock, "sem_*"},
-                           Named{Forbidden::lock, "mtx_*"},
-                           Named{Forbidden::lock, "thrd_*"},
-                           Named{Forbidden::lock, "__cxa_guard_acquire"},
-                           Named{Forbidden::lock, "GOMP_*"},
-                           Named{Forbidden::lock, "_ZNSt6thread*"},
-                           Named{Forbidden::input_output, "printf"},
-                           Named{Forbidden::input_output, "fprintf"},
-                           Named{Forbidden::input_output, "vfprintf"},
-                           Named{Forbidden::input_output, "__printf_chk"},
-                           Named{Forbidden::input_output, "__fprintf_chk"},
-                           Named{Forbidden::input_output, "puts"},
-                           Named{Forbidden::input_output, "putchar"},
-                           Named{Forbidden::input_output, "fputs"},
-                           Named{Forbidden::input_output, "fputc"},
-                           Named{Forbidden::input_output, "fwrite"},
-                           Named{Forbidden::input_output, "fread"},
-                           Named{Forbidden::input_output, "fgets"},
-                           Named{Forbidden::input_output, "fflush"},
-                           Named{Forbidden::input_output, "fopen*"},
-                           Named{Forbidden::input_output, "fclose"},
-                           Named{Forbidden::input_output, "open*"},
-                           Named{Forbidden::input_output, "read"},
-                           Named{Forbidden::input_output, "write"},
-                           Named{Forbidden::input_output, "perror"},
-                           Named{Forbidden::input_output, "syslog"},
-                           Named{Forbidden::input_output, "getenv"},
-                           Named{Forbidden::input_output, "setenv"},
-                           Named{Forbidden::input_output, "system"},
-                           Named{Forbidden::input_output, "_ZSt16__ostream_insert*"},
-                           Named{Forbidden::input_output, "_ZStlsISt11char_traits*"},
-                           Named{Forbidden::input_output, "_ZNSo*"},
-                           Named{Forbidden::clock, "time"},
-                           Named{Forbidden::clock, "clock"},
-                           Named{Forbidden::clock, "clock_gettime"},
-                           Named{Forbidden::clock, "gettimeofday"},
-                           Named{Forbidden::clock, "timespec_get"},
-                           Named{Forbidden::clock, "sleep"},
-                           Named{Forbidden::clock, "usleep"},
-                           Named{Forbidden::clock, "nanosleep"},
-                           Named{Forbidden::clock, "_ZNSt6chrono*"},
-                           Named{Forbidden::clock, "rand"},
-                           Named{Forbidden::clock, "rand_r"},
-                           Named{Forbidden::clock, "random*"},
-                           Named{Forbidden::clock, "drand48*"},
-                           Named{Forbidden::clock, "lrand48*"},
-                           Named{Forbidden::clock, "getrandom"},
-                           Named{Forbidden::clock, "arc4random*"},
-                           Named{Forbidden::ending, "exit"},
-                           Named{Forbidden::ending, "_exit"},
-                           Named{Forbidden::ending, "abort"},
-                           Named{Forbidden::ending, "raise"},
-                           Named{Forbidden::ending, "kill"},
-                           Named{Forbidden::ending, "signal"},
-                           Named{Forbidden::ending, "sigaction"},
-                           Named{Forbidden::ending, "_setjmp"},
-                           Named{Forbidden::ending, "longjmp"}};
-
-bool matches(const char* pattern, const char* name) {
-  const std::size_t size = std::strlen(pattern);
-  if (pattern[size - 1] == '*') return std::strncmp(pattern, name, size - 1) == 0;
-  return std::strcmp(pattern, name) == 0;
-}
-
-// Which of them a symbol is; the size of the list where it is none.
-std::size_t place_of(const char* name, Forbidden kind) {
-  std::size_t k = 0;
-  while (k < named.size() && !(named[k].kind == kind && matches(named[k].name, name))) ++k;
-  return k;
+bool matches(const std::string& pattern, const std::string& name) {
+  if (pattern.back() != '*') return pattern == name;
+  return name.compare(0, pattern.size() - 1, pattern, 0, pattern.size() - 1) == 0;
 }
 
 // Replacement of a forbidden function. It never returns, so its arguments do not matter.
 template <std::size_t K>
 [[noreturn]] void called() {
-  end_here("called ", named[K].name);
+  end_here("called ", watched[K].c_str());
 }
 template <std::size_t... K>
 constexpr auto substitutes(std::index_sequence<K...>) {
   return std::array<void (*)(), sizeof...(K)>{called<K>...};
 }
-constexpr auto all_substitutes = substitutes(std::make_index_sequence<named.size()>{});
+constexpr auto all_substitutes = substitutes(std::make_index_sequence<most_names>{});
 
 // Entries of the dynamic section of a loaded file.
 struct Dynamic {
@@ -265,9 +191,12 @@ std::optional<std::vector<Exported>> exported_symbols(const std::string& library
 }
 
 CallWatch::CallWatch(const std::string& library, Forbidden kind) {
+  std::istringstream words(forbidden[static_cast<std::size_t>(kind)]);
+  watched.assign(std::istream_iterator<std::string>(words), {});
   for_imports(library, [&](void** place, const char* name) {
-    const std::size_t k = place_of(name, kind);
-    if (k == named.size()) return;
+    std::size_t k = 0;
+    while (k < watched.size() && !matches(watched[k], name)) ++k;
+    if (k == watched.size()) return;
     make_writable(place);
     slots_.push_back({place, *place});
     *place = reinterpret_cast<void*>(all_substitutes[k]);

@@ -86,7 +86,9 @@ struct conductance {
     const V c = 1.0 / heat_capacity + 1.0 / counterpart_heat_capacity;
     const V exchanged = -exp_minus_one(-(flow * c)) / select(c > 0.0, c, 1.0);
     const V per_kelvin = select(c > 0.0, exchanged, flow);
-    return zero_unless(per_kelvin > 0.0, (counterpart_temperature - temperature) * per_kelvin);
+    const V difference = counterpart_temperature - temperature;
+    // A flow that overflows in a huge step times no difference would be NaN.
+    return zero_unless((per_kelvin > 0.0) & (difference != 0.0), difference * per_kelvin);
   }
 };
 

@@ -45,6 +45,12 @@ TEST(Rules, StandOnTheirPage) {
       << table_of_rules();
 }
 
+TEST(Rules, MakeATableOfThreeColumns) {
+  std::stringstream table(table_of_rules());
+  for (std::string line; std::getline(table, line);)
+    EXPECT_EQ(std::count(line.begin(), line.end(), '|'), 4) << line;
+}
+
 TEST(Sample, KeepsEveryRule) {
   const Checked checked = check_sample("", only({}));
   EXPECT_TRUE(checked.all_passed()) << text_of(checked);
@@ -300,6 +306,33 @@ TEST(Seeds, AreTriedByRulesOfMotion) {
   const auto one = steps_of({1}), two = steps_of({2}), both = steps_of({1, 2});
   EXPECT_EQ(both.at("mirror"), one.at("mirror") + two.at("mirror"));
   EXPECT_EQ(both.at("purity-twice"), one.at("purity-twice"));
+}
+
+// No float is a tenth.
+TEST(Parameters, MayHaveADefaultThatNoFloatIs) {
+  const Checked checked = check_sample("a default of .1", only({"per-node-constant", "parameter-default"}));
+  EXPECT_TRUE(checked.all_passed()) << text_of(checked);
+}
+
+// Depends on what was called before, at one node in 10^5.
+TEST(Fuzz, FindsAndShrinksARareFault) {
+  Options options = only({"purity-twice", "batch-order", "frame-turned"});
+  EXPECT_TRUE(check_sample("rare memory", options).all_passed());
+  options.only = {"purity-twice"};
+  options.fuzz_minutes = 1.0;
+  const Checked found = check_sample("rare memory", options);
+  ASSERT_EQ(broken(found), Names{"purity-twice"});
+  const Outcome& outcome = found.outcomes.at(0);
+  EXPECT_GT(outcome.seed, 3U);
+  EXPECT_EQ(outcome.part.nodes.size(), 1U);
+  EXPECT_EQ(outcome.part.steps.size(), 1U);
+  EXPECT_EQ(outcome.finding.arrays.back().name, "state_in");
+  options.fuzz_minutes = 0.0;
+  options.seeds = {outcome.seed};
+  options.part = outcome.part;
+  const Checked again = check_sample("rare memory", options);
+  EXPECT_EQ(again.outcomes.at(0).finding.seen, outcome.finding.seen);
+  EXPECT_NE(text_of(again).find(" --nodes " + std::to_string(outcome.part.nodes[0])), std::string::npos);
 }
 
 TEST(Parameters, ReplaceTheDrawnOnes) {

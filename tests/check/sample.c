@@ -142,6 +142,10 @@ __attribute__((constructor)) static void begin(void) {
   if (breaks("library-opens")) law.title = NULL;
   if (breaks("description-units")) friction.unit = "furlong";
   if (breaks("description-units: amount")) heat.unit = "calorie";
+  if (breaks("a default of .1")) {
+    damping.flags &= ~(ilaw_parameter_flags)ILAW_FLAG_REQUIRED;
+    damping.default_value = 0.1;
+  }
   if (breaks("description-range")) wear.minimum = wear.maximum = 1.0;
   if (breaks("extension-unknown: library")) plugin.extension = library_extension;
   if (breaks("held-bonds")) law.capabilities = ILAW_CAN_HOLD_BONDS;

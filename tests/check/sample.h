@@ -52,7 +52,7 @@ int breaks(const char* rule);
 /* Memory shared by instances that break a rule; not a global of the library. */
 typedef struct shared_memory {
   const ilaw_instance *last, *before;
-  uint32_t infos;
+  uint32_t infos, rare_calls;
 } shared_memory;
 shared_memory* shared(void);
 int on_first_thread(void);

@@ -155,7 +155,7 @@ static int lacks_field(const ilaw_instance* made, int has_temperature) {
 ilaw_result ILAW_CALL sample_create(const char* id, const ilaw_setup* setup, ilaw_instance** result,
                                     char* message, size_t size) {
   ilaw_instance* made;
-  int has_damping = breaks("parameter-missing"), has_temperature = 0;
+  int has_damping = breaks("parameter-missing") || breaks("a default of .1"), has_temperature = 0;
   uint32_t k;
   disturb("calls-process");
   if (!result) return ILAW_INVALID_ARGUMENT;
@@ -173,7 +173,7 @@ ilaw_result ILAW_CALL sample_create(const char* id, const ilaw_setup* setup, ila
   if (!made) return ILAW_OUT_OF_MEMORY;
   made->own = calloc(1, sizeof *made->own);
   memcpy(&made->setup, setup, sizeof made->setup);
-  made->damping.constant = 1.0;
+  made->damping.constant = breaks("a default of .1") ? 0.1 : 1.0;
   made->friction.constant = 0.3;
   made->temperature.constant = 293.15;
   made->rough = breaks("parameter-default");

@@ -51,6 +51,16 @@ TEST(Conductance, BringsTwoBodiesToTheirEquilibrium) {
   }
 }
 
+// As long a step as a double holds: the flow is infinite, and no heat flows without a difference.
+TEST(Conductance, IsNoNaNInAnyStep) {
+  for (const double capacity : {2.0, HUGE_VAL}) {
+    NodeRun node("conductance", {{{"conductance", 100.0}, {"heat_capacity", capacity}}, {}}, 1e308);
+    ASSERT_EQ(node.step({-1.0, 0.0, 0.0}), ILAW_OK);
+    EXPECT_EQ(node.amount("conducted_heat"), 0.0);
+    EXPECT_EQ(node.amount("heat_per_kelvin"), HUGE_VAL);
+  }
+}
+
 TEST(Conductance, ConductsNothingThroughAGap) {
   NodeRun node("conductance", {{{"conductance", 100.0}, {"temperature", 400.0}}, {}}, 0.01);
   node.gap = 0.1;
