@@ -62,6 +62,7 @@ struct Wrong {
   bool for_initialise;
   std::uint32_t input = 0;  // the instance must read it; 0: any
   bool spins = false;       // the setup must have them
+  bool plane = false;       // it must have dimension 2 or 3
 };
 
 std::int32_t list_below[] = {1, 0};
@@ -94,6 +95,8 @@ const Wrong wrong_calls[] = {
      },
      true},
     {"an impulse with node_stride 0", [](ilaw_batch& b) { b.impulse.node_stride = 0; }, false},
+    {"a v_free with component_stride 0", [](ilaw_batch& b) { b.v_free.component_stride = 0; }, false, 0,
+     false, true},
     {"gap null", [](ilaw_batch& b) { b.gap = {}; }, false, ILAW_INPUT_GAP},
     {"v_previous null", [](ilaw_batch& b) { b.v_previous = {}; }, false, ILAW_INPUT_V_PREVIOUS},
     {"area null", [](ilaw_batch& b) { b.area = {}; }, false, ILAW_INPUT_AREA},
@@ -145,7 +148,8 @@ void calls_refused(const Subject& subject) {
   with_two_nodes(subject, [](const Trial& trial, Arrays& arrays, const Inputs& in,
                              const std::vector<double>& before) {
     for (const Wrong& wrong : wrong_calls)
-      if ((wrong.input == 0 || trial.reads(wrong.input)) && (!wrong.spins || trial.setup.spins()))
+      if ((wrong.input == 0 || trial.reads(wrong.input)) && (!wrong.spins || trial.setup.spins()) &&
+          (!wrong.plane || trial.setup.dimension > 1))
         expect_refused(trial, arrays, in, before, wrong, ILAW_INVALID_ARGUMENT);
     if (trial.info.state_size > 0)
       expect_refused(trial, arrays, in, before,

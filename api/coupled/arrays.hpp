@@ -32,6 +32,11 @@ inline void store(const ilaw_output& array, std::int64_t i, std::uint32_t dimens
   for (std::uint32_t c = 0; c < dimension; ++c) first[c * array.component_stride] = values[c];
 }
 
+// A flat array of all degrees of freedom, whose first numbers would be taken for every component.
+inline bool is_flat(const ilaw_input& a, std::uint32_t components) {
+  return a.values && components > 1 && a.component_stride == 0;
+}
+
 // Upper bound of counts: sizes of arrays cannot overflow.
 inline constexpr std::int64_t max_entries = std::int64_t{1} << 40;
 

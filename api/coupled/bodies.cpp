@@ -22,9 +22,13 @@ const char* Bodies::complaint(const ilaw_bodies* given) {
     if (collides(*a, bodies.count, bodies.dimension)) return "an output of bodies overlaps itself";
   if (bodies.count == 0) return nullptr;
   if (!bodies.inverse_mass.values || !bodies.v_free.values) return "inverse_mass or v_free is missing";
+  if (is_flat(bodies.v_free, bodies.dimension) || is_flat(bodies.v_previous, bodies.dimension))
+    return "v_free or v_previous has one component per body (component stride 0), expected a (d,n) array";
   if (!bodies.inverse_inertia.values) return nullptr;
   if (bodies.dimension != 3) return "bodies rotate in dimension 3 alone";
   if (!bodies.spin_free.values) return "spin_free is missing";
+  if (is_flat(bodies.spin_free, 3) || is_flat(bodies.spin_previous, 3))
+    return "spin_free or spin_previous has one component per body (component stride 0), expected a (3,n) array";
   return bodies.v_previous.values && !bodies.spin_previous.values ? "spin_previous is missing" : nullptr;
 }
 

@@ -110,6 +110,8 @@ const char* Contacts::complaint_of_bodies(const Bodies& bodies) const {
   } else if (has_spins()) {
     return "delassus_form has spins, and bodies do not rotate: inverse_inertia is missing";
   }
+  if (is_flat(theirs_.normal, dimension_) || is_flat(theirs_.tangent, dimension_))
+    return "normal or tangent has one component per contact (component stride 0), expected a (d,n) array";
   if (!is_transverse()) return nullptr;
   if (bodies.rotate() && !bodies.are_spheres())
     return "delassus_form is transverse, and bodies are no spheres";

@@ -1,7 +1,9 @@
 // The Fortran module: arrays without a copy, lists of nodes, parameters. Layouts are in
 // python/test_bindings.py.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/law_runner.hpp"
 #include "support/matchers.hpp"
+#include "support/small_batch.hpp"
 
 #include <ilaw/ilaw.h>
 
@@ -22,6 +24,7 @@ std::int32_t fortran_create(const char* library, int way, std::int32_t* per_node
 
 namespace {
 
+using namespace ilaw::testing;
 using namespace ilaw::testing::matchers;
 TEST(FortranModule, DeclaredBatchIsEmptyAndCountsFromOne) {
   const ilaw_batch batch = fortran_default_batch();
@@ -79,6 +82,17 @@ INSTANTIATE_TEST_SUITE_P(Sections, FortranArray,
                                          section{5, 9, 1, 31, 1, 0},     // (3,:)
                                          section{6, 5, 3, 25, 0, 10},    // (2:4,5) for all
                                          section{7, 1, 3, 47, 0, 10}));  // (4:6,7:7)
+
+// A vector of all degrees of freedom is one number per node for the module, and no velocity for a law.
+TEST(FortranModule, FlatVectorIsRefusedByTheLaw) {
+  const ilaw::interface law = make_law("coulomb", SetupBuilder({{{"friction", 0.5}}, {}}));
+  SmallBatch nodes(2, {-1.0, 0.0, 0.0});
+  ASSERT_EQ(law.evaluate(nodes.b), ILAW_OK);
+  nodes.b.v_free = fortran_input(4, 8);
+  EXPECT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_INVALID_ARGUMENT);
+  EXPECT_STREQ(nodes.report.reason,
+               "v_free has one component per node (component stride 0), expected a (d,n) array");
+}
 
 TEST(FortranModule, EmptyArrayIsAbsent) {
   for (const int bytes : {8, 4}) {

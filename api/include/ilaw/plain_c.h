@@ -551,6 +551,9 @@ static inline const char* ilaw_plain_wrong_call(const ilaw_instance* own, const 
   return ilaw_plain_wrong_array(0, b->state_out.values, b->state_out.floats, "state_out is null");
 }
 
+/* A flat array of all degrees of freedom: its first numbers would be taken in silence for every component. */
+#define ILAW_PLAIN_FLAT(name) name " has one component per node (component stride 0), expected a (d,n) array"
+
 static inline const char* ilaw_plain_wrong_arrays(const ilaw_instance* own, const ilaw_batch* b) {
   const ilaw_law* law = &own->plain->law;
   const ilaw_inputs in = ilaw_plain_inputs(own);
@@ -559,17 +562,19 @@ static inline const char* ilaw_plain_wrong_arrays(const ilaw_instance* own, cons
   const struct {
     const ilaw_input* array;
     int is_read;
-    const char* missing; /* null: may be absent */
-  } inputs[] = {{&b->v_free, 1, "v_free is null"},
-                {&b->delassus, 1, "delassus is null"},
-                {&b->v_smooth, in & ILAW_INPUT_V_SMOOTH, NULL},
-                {&b->gap, in & ILAW_INPUT_GAP, "gap is null"},
-                {&b->gap_offset, in & ILAW_INPUT_GAP, NULL},
-                {&b->v_previous, in & ILAW_INPUT_V_PREVIOUS, "v_previous is null"},
-                {&b->area, in & ILAW_INPUT_AREA, "area is null"},
-                {&b->normal, in & ILAW_INPUT_NORMAL, "normal is null"},
-                {&b->spin_free, spins != 0, "spin_free is null"},
-                {&b->spin_previous, spins && in & ILAW_INPUT_V_PREVIOUS, "spin_previous is null"}};
+    const char *missing, *flat; /* null: may be absent; no vector */
+  } inputs[] = {
+      {&b->v_free, 1, "v_free is null", ILAW_PLAIN_FLAT("v_free")},
+      {&b->delassus, 1, "delassus is null", NULL},
+      {&b->v_smooth, in & ILAW_INPUT_V_SMOOTH, NULL, ILAW_PLAIN_FLAT("v_smooth")},
+      {&b->gap, in & ILAW_INPUT_GAP, "gap is null", NULL},
+      {&b->gap_offset, in & ILAW_INPUT_GAP, NULL, NULL},
+      {&b->v_previous, in & ILAW_INPUT_V_PREVIOUS, "v_previous is null", ILAW_PLAIN_FLAT("v_previous")},
+      {&b->area, in & ILAW_INPUT_AREA, "area is null", NULL},
+      {&b->normal, in & ILAW_INPUT_NORMAL, "normal is null", ILAW_PLAIN_FLAT("normal")},
+      {&b->spin_free, spins != 0, "spin_free is null", ILAW_PLAIN_FLAT("spin_free")},
+      {&b->spin_previous, spins && in & ILAW_INPUT_V_PREVIOUS, "spin_previous is null",
+       ILAW_PLAIN_FLAT("spin_previous")}};
   const struct {
     const ilaw_output* array;
     uint32_t components;
@@ -586,10 +591,12 @@ static inline const char* ilaw_plain_wrong_arrays(const ilaw_instance* own, cons
     return "position_step is not a finite number > 0";
   if (b->node_count == 0) return NULL;
   if (b->status && b->node_count > 1 && b->status_stride == 0) return "status_stride is 0";
-  for (size_t k = 0; k < sizeof inputs / sizeof *inputs && !wrong; ++k)
-    if (inputs[k].is_read)
-      wrong = ilaw_plain_wrong_array(is_float, inputs[k].array->values, inputs[k].array->floats,
-                                     inputs[k].missing);
+  for (size_t k = 0; k < sizeof inputs / sizeof *inputs && !wrong; ++k) {
+    const ilaw_input* a = inputs[k].array;
+    if (!inputs[k].is_read) continue;
+    wrong = ilaw_plain_wrong_array(is_float, a->values, a->floats, inputs[k].missing);
+    if (!wrong && (a->values || a->floats) && d > 1 && a->component_stride == 0) wrong = inputs[k].flat;
+  }
   for (size_t k = 0; k < sizeof outputs / sizeof *outputs && !wrong; ++k) {
     const ilaw_output* a = outputs[k].array;
     if (outputs[k].components == 0) continue;
@@ -608,6 +615,7 @@ static inline const char* ilaw_plain_wrong_arrays(const ilaw_instance* own, cons
   if (wrong || law->state_variable_count == 0) return wrong;
   return ilaw_plain_wrong_array(0, b->state_in.values, b->state_in.floats, "state_in is null");
 }
+#undef ILAW_PLAIN_FLAT
 
 /* False where a number is not finite. */
 static inline int ilaw_plain_vector(const ilaw_input* a, int64_t i, uint32_t dimension, double* out) {

@@ -128,8 +128,17 @@ inline const char* other_numbers(const instance_base& made, const ilaw_batch& b,
   return is_bad ? "an array is of other numbers than the setup's, or has both pointers" : nullptr;
 }
 
-// The first of the arrays that evaluate or initialise needs and that is absent; null when none is.
-inline const char* missing_input(const instance_base& made, const ilaw_batch& b, std::uint32_t needed) {
+// A vector whose components have one address. It comes from a flat array of all degrees of freedom, whose
+// first numbers would be taken in silence for every component.
+inline bool is_flat(std::uint32_t components, const ilaw_input& a) {
+  return (a.values || a.floats) && components > 1 && a.component_stride == 0;
+}
+
+// Says which array that evaluate or initialise needs is absent or flat; null when none is.
+inline const char* wrong_input(const instance_base& made, const ilaw_batch& b, std::uint32_t needed) {
+  const auto flat = [&](ilaw_inputs input, const ilaw_input& a) {
+    return (needed & input) && is_flat(made.dimension, a);
+  };
   if ((needed & ILAW_INPUT_GAP) && is_absent(made, b.gap)) return "gap is null";
   if ((needed & ILAW_INPUT_V_PREVIOUS) && is_absent(made, b.v_previous)) return "v_previous is null";
   if ((needed & ILAW_INPUT_AREA) && is_absent(made, b.area)) return "area is null";
@@ -139,6 +148,14 @@ inline const char* missing_input(const instance_base& made, const ilaw_batch& b,
   for (std::uint32_t k = 0; k < made.per_node_count; ++k)
     if (is_absent(made, b.per_node_parameters[k])) return "values of a per-node parameter are null";
   if (made.state_size > 0 && !b.state_out.values) return "state_out is null";
+  if (flat(ILAW_INPUT_V_PREVIOUS, b.v_previous))
+    return "v_previous has one component per node (component stride 0), expected a (d,n) array";
+  if (flat(ILAW_INPUT_V_SMOOTH, b.v_smooth))
+    return "v_smooth has one component per node (component stride 0), expected a (d,n) array";
+  if (flat(ILAW_INPUT_NORMAL, b.normal))
+    return "normal has one component per node (component stride 0), expected a (d,n) array";
+  if (flat(ILAW_INPUT_TANGENT, b.tangent))
+    return "tangent has one component per node (component stride 0), expected a (d,n) array";
   return nullptr;
 }
 
@@ -192,11 +209,16 @@ inline const char* colliding_output(const instance_base& made, const ilaw_batch&
 }
 
 // The same of what a form of H with spins needs.
-inline const char* missing_spins(const instance_base& made, const ilaw_batch& b, std::uint32_t needed) {
+inline const char* wrong_spins(const instance_base& made, const ilaw_batch& b, std::uint32_t needed) {
   if (!made.has_spins()) return nullptr;
   if (is_absent(made, b.spin_free)) return "spin_free is null";
   if (is_absent(made, b.moment)) return "moment is null";
-  if ((needed & ILAW_INPUT_V_PREVIOUS) && is_absent(made, b.spin_previous)) return "spin_previous is null";
+  if (is_flat(3, b.spin_free))
+    return "spin_free has one component per node (component stride 0), expected a (d,n) array";
+  if (!(needed & ILAW_INPUT_V_PREVIOUS)) return nullptr;
+  if (is_absent(made, b.spin_previous)) return "spin_previous is null";
+  if (is_flat(3, b.spin_previous))
+    return "spin_previous has one component per node (component stride 0), expected a (d,n) array";
   return nullptr;
 }
 
@@ -208,13 +230,15 @@ inline const char* wrong_batch(const instance_base& made, const ilaw_batch& b, b
     return "position_step is not a finite number > 0";
   if (b.node_count == 0) return nullptr;
   if (is_absent(made, b.v_free)) return "v_free is null";
+  if (is_flat(made.dimension, b.v_free))
+    return "v_free has one component per node (component stride 0), expected a (d,n) array";
   if (is_absent(made, b.delassus)) return "delassus is null";
   if (is_absent(made, b.impulse)) return "impulse is null";
   if (made.state_size > 0 && !b.state_in.values) return "state_in is null";
   if (const char* wrong = colliding_output(made, b)) return wrong;
   const std::uint32_t read = made.inputs | (wants_balance(made, b) ? made.balance_inputs : 0U);
-  if (const char* wrong = missing_input(made, b, read)) return wrong;
-  if (const char* wrong = missing_spins(made, b, read)) return wrong;
+  if (const char* wrong = wrong_input(made, b, read)) return wrong;
+  if (const char* wrong = wrong_spins(made, b, read)) return wrong;
   return other_numbers(made, b, read);
 }
 
@@ -222,7 +246,7 @@ inline const char* wrong_initial(const instance_base& made, const ilaw_batch& b)
   if (const char* wrong = wrong_scalars(b)) return wrong;
   if (b.node_count == 0) return nullptr;
   const std::uint32_t needed = made.inputs & (ILAW_INPUT_AREA | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT);
-  if (const char* wrong = missing_input(made, b, needed)) return wrong;
+  if (const char* wrong = wrong_input(made, b, needed)) return wrong;
   return colliding_state(made, b);
 }
 
