@@ -83,7 +83,7 @@ TEST(ForeignState, FrameThatIsNoneIsBadInput) {
     EXPECT_EQ(nodes.report.bad_count, 1);
     EXPECT_EQ(nodes.report.first_bad_node, 1);
     EXPECT_STREQ(nodes.report.reason,
-                 "the state holds no frame: it is not one that the law can have written");
+                 "the state was not initialised, or is of another law or version (it holds no frame)");
   }
 }
 

@@ -145,7 +145,7 @@ inline constexpr const char* reason_texts[] = {
     "v_previous is not finite",
     "spin_free or spin_previous is not finite",
     "the area is not a finite number >= 0",
-    "the state holds no frame: it is not one that the law can have written",
+    "the state was not initialised, or is of another law or version (it holds no frame)",
     "the state is not finite",
     "the law's equations have several solutions for this H and step: a smaller step is needed",
     "the law's equations have no solution for this H",
