@@ -85,16 +85,16 @@ using input_t = std::conditional_t<(Law::card.inputs & Input) != 0, Declared, Un
 // Stands in the place of spins and moments where H has none.
 struct spinless {};
 
-// A step reads the first part and writes the second. Law: with its number type. Vector: vector<V>, or
-// projected<V> for isotropic laws in the host's axes. Delassus: transverse<V> or full<V>.
+// What a step reads. Law: with its number type. Vector: vector<V>, or projected<V> for isotropic laws in the
+// host's axes. Delassus: transverse<V> or full<V>.
 template <class Law, class Vector, class Delassus>
-struct node {
+struct node_inputs {
   using number = typename number_of_law<Law>::type;
   using V = number;
   using spin_type = std::conditional_t<has_spin_form<Delassus>, Vector, spinless>;
 
   const double time, velocity_step, position_step, per_position_step;
-  const bool wants_energy;  // whether what follows "stored" below is asked for, or an amount
+  const bool wants_energy;  // whether the results after "stored" are asked for, or an amount
   const bool is_coupled;    // the host gives v_smooth
   const bonds of_bonds;     // of laws that can_hold_bonds
   const prepared_t<Law>& prepared;
@@ -110,9 +110,15 @@ struct node {
   // A spin w is given as w_N and w x n: the velocity at the contact point of a sphere of unit radius.
   const spin_type spin_free = {}, spin_previous = {};
   vector<V> earlier = {};  // what the law's window sums up to before the step
+};
+
+// What a step writes.
+template <class Law, class Vector, class Spin>
+struct node_results {
+  using V = typename number_of_law<Law>::type;
 
   Vector impulse = {};
-  spin_type moment = {};    // m_N and m x n likewise
+  Spin moment = {};         // m_N and m x n likewise
   state_t<Law> state = {};  // comes in as it was, leaves as it is
   V stored = 0.0;           // energy stored by the interface at the end of the step
   // Energy that the step added to it, by the normal and by the tangential motion; the rest of the work is
@@ -126,6 +132,14 @@ struct node {
   ILAW_KIT_INLINE void refuse(mask_of<V> where, refusal reason) {
     refused = select(where, V(static_cast<double>(reason)), refused);
   }
+};
+
+template <class Law, class Vector, class Delassus>
+struct node : node_inputs<Law, Vector, Delassus>,
+              node_results<Law, Vector, typename node_inputs<Law, Vector, Delassus>::spin_type> {
+  using inputs = node_inputs<Law, Vector, Delassus>;
+  using results = node_results<Law, Vector, typename inputs::spin_type>;
+  using V = typename inputs::V;
 };
 
 template <class Node>

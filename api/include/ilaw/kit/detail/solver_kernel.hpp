@@ -214,6 +214,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
   using typename base::node_type;
   using typename base::view_type;
   using typename base::Wide;
+  using results = typename node_type::results;
   using careful_kernel =
       std::conditional_t<base::is_projected, solver_kernel<Law, V, copied, normal_frame, Delassus>,
                          solver_kernel<Law, V, copied, either_frame, Delassus>>;
@@ -244,14 +245,14 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     if constexpr (!careful)
       if (any(bad_input)) [[unlikely]]
         return false;
-    node_type closed = as_it_came(p.node);
+    const results came = p.node;
     problem own;
     kit::asked<V> asked{none<V>(), status::free};
     if (!at.finishing || all.open[at.k] != all_of_pack) {
       if constexpr (careful)
-        asked = ask_apart(law, closed, own);
+        asked = ask_apart(law, p.node, own);
       else
-        asked = law.ask(closed, own);
+        asked = law.ask(p.node, own);
     }
     status_of<V> status = asked.status;
     if (at.finishing) {
@@ -260,10 +261,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
 #pragma GCC unroll 64
       for (int k = 0; k < problems_type::answers; ++k)
         get_packed(reinterpret_cast<V*>(&a)[k], open, all.answer[k] + at.first);
-      const status_of<V> finished = law.finish(p.node, a);
-      const mask is_open = mask_from<V>(open);
-      choose(p.node, closed, is_open);
-      status = select(is_open, finished, status);
+      status = finish(law, p.node, came, a, mask_from<V>(open), status);
     } else {
       const unsigned open = mask_bits(asked.open & nodes & !bad_input);
       all.open[at.k] = open;
@@ -272,7 +270,6 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
         keep(law, own, open, all);
         return true;
       }
-      choose(p.node, closed, mask_from<V>(0));
     }
     base::check_result(p.node, b, c);
     const mask bad = c.bad();
@@ -288,29 +285,16 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     if constexpr (careful) base::add_bad(found, c, nodes, node);
     return true;
   }
-  // Member by member: for a copy of the whole compilers keep both in memory.
-  ILAW_KIT_INLINE static node_type as_it_came(const node_type& n) {
-    return {.time = n.time,
-            .velocity_step = n.velocity_step,
-            .position_step = n.position_step,
-            .per_position_step = n.per_position_step,
-            .wants_energy = n.wants_energy,
-            .is_coupled = n.is_coupled,
-            .of_bonds = n.of_bonds,
-            .prepared = n.prepared,
-            .v_free = n.v_free,
-            .v_smooth = n.v_smooth,
-            .v_previous = n.v_previous,
-            .delassus = n.delassus,
-            .gap = n.gap,
-            .area = n.area,
-            .spin_free = n.spin_free,
-            .spin_previous = n.spin_previous,
-            .earlier = n.earlier,
-            .state = n.state,
-            .refused = n.refused};
+  // Finishes the lanes with an answer from the results that they came with; the others stay as ask left them.
+  ILAW_KIT_INLINE static status_of<V> finish(const Wide& law, node_type& n, const results& came,
+                                             const answer& a, mask is_open, status_of<V> closed_status) {
+    const results closed = n;
+    static_cast<results&>(n) = came;
+    const status_of<V> finished = law.finish(n, a);
+    choose(n, closed, is_open);
+    return select(is_open, finished, closed_status);
   }
-  ILAW_KIT_INLINE static void choose(node_type& a, const node_type& b, mask first) {
+  ILAW_KIT_INLINE static void choose(results& a, const results& b, mask first) {
     a.impulse = select(first, a.impulse, b.impulse);
     if constexpr (base::spins) a.moment = select(first, a.moment, b.moment);
 #pragma GCC unroll 32

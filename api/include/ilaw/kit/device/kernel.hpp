@@ -172,17 +172,16 @@ ILAW_KIT_INLINE void solve_and_step_node(const Law& law, const Wide& wide, const
   const auto prepared = kit::prepared(wide, b.step);
   auto p = Solver::load_pack(prepared, b, 0, c);
   Solver::take_state(p.node, b, 0, c);
-  auto closed = Solver::as_it_came(p.node);
+  const typename Solver::results came = p.node;
   typename Wide::problem open;
-  const asked<device_number> asked = wide.ask(closed, open);
+  const asked<device_number> asked = wide.ask(p.node, open);
   const device_mask is_open = asked.open & !c.bad();
   status_of<device_number> status = asked.status;
   if (any(is_open)) {
     typename Wide::answer answer{};
     solve_node(law, wide, b.step, open, answer, prepared);
-    status = wide.finish(p.node, answer);
+    status = Solver::finish(wide, p.node, came, answer, is_open, status);
   }
-  Solver::choose(p.node, closed, is_open);
   Solver::check_result(p.node, b, c);
   Solver::store_pack(wide, p, b, 0, status, !c.bad());
   Solver::steps::add(limits, wide, p.node, b.varying, !c.bad());
