@@ -111,14 +111,14 @@ TEST_F(FirstLaw, IsTheSameAgainstTheBuildTree) {
   EXPECT_THAT(text_of(build / "CTestTestfile.cmake", ILAW_BUILD, "BUILD"), HasSubstr("BUILD/bin/ilaw"));
 }
 
-// Every name that law_names.hpp knows, on the page and at the top of law.hpp.
+// Every name that law_checks.hpp knows, on the page and at the top of law.hpp.
 TEST(FirstLawPage, ListsAllNames) {
   const auto text = [](const char* file) {
     std::ostringstream all;
     all << std::ifstream(file).rdbuf();
     return all.str();
   };
-  const std::string checks = text(ILAW_SOURCE "/api/include/ilaw/kit/detail/law_names.hpp");
+  const std::string checks = text(ILAW_SOURCE "/api/include/ilaw/kit/detail/law_checks.hpp");
   const std::string law = text(ILAW_SOURCE "/api/include/ilaw/kit/law.hpp"), page = text(ILAW_PAGE);
   const std::regex name("ILAW_KIT_NAME\\((?!wrong)(\\w+)\\);");
   int names = 0;
