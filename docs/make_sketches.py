@@ -9,6 +9,7 @@ Needs matplotlib (python3-matplotlib). The same tables give the same bytes.
 # SPDX-License-Identifier: BSD-3-Clause
 
 import csv
+import math
 import re
 import sys
 from pathlib import Path
@@ -324,8 +325,62 @@ def mujoco_slip():
     save(figure, "mujoco_slip")
 
 
+def implicit_spring(stiffness, restitution, loads, height=0.3, speed=-1.0):
+    """A node on an implicit spring by the equations of docs/theory/springs.md, solved by bisection, with p, H, h and
+    l all 1: height at half steps, indentation and withheld work after each step."""
+    lost = -math.log(restitution)
+    ratio = lost / math.pi * (((0.0081 * lost + 0.022) * lost + 0.2088) * lost + 1)
+    frequency, lead = math.sqrt(stiffness), 1 / (1 + restitution) - 0.5
+    damping = 2 * ratio * frequency / (1 + (1 + 2 * ratio) * frequency / 4)
+    indentation = withheld = 0.0
+    for load in loads:
+        free, is_closed = speed + load, indentation > 0 or height + speed / 2 <= 0
+
+        def step(impulse):
+            mean, ahead = free + (impulse - load) / 2, lead * (load + impulse)
+            left = max(indentation - mean - max(ahead, 0), 0)
+            for _ in range(60 if ahead < 0 < withheld else 0):
+                force = stiffness * (indentation + left) / 2
+                left = max(indentation - mean + min(-ahead, withheld / max(force, 1e-300)), 0)
+            if ahead < 0:
+                ahead = indentation - left - mean if withheld > 0 else 0.0
+            way = mean + ahead
+            part = min(1, indentation / way) if way > 0 else 1
+            force = part * stiffness * (indentation + left) / 2
+            return max(force - damping * part * mean, 0), left, force * ahead
+
+        low, high = 0.0, 100.0
+        for _ in range(80):
+            middle = (low + high) / 2
+            low, high = (middle, high) if step(middle)[0] > middle else (low, middle)
+        impulse, left, banked = step(low) if is_closed else (0.0, 0.0, 0.0)
+        zero = height + (free + impulse) / 2 + left
+        withheld = max(min(withheld + banked, stiffness * left * max(-zero, 0)), 0)
+        indentation, speed = left, free + impulse
+        yield height + speed / 2, indentation, withheld
+        height += speed
+
+
+def lead():
+    """How the zero of an implicit spring with restitution moves, and the work that is withheld for it."""
+    loads = [-0.15 * (1 + 0.8 * math.sin(2 * math.pi * step / 9)) for step in range(34)]
+    heights, indentations, withheld = zip(*implicit_spring(4.0, 0.3, loads))
+    zeros = [height + indentation if indentation > 0 else None for height, indentation in zip(heights, indentations)]
+    steps = range(1, len(loads) + 1)
+    figure, (above, below) = plt.subplots(2, 1, figsize=(7.4, 4.6), sharex=True, height_ratios=[2, 1])
+    above.axhline(0, color=DARK, linewidth=1)
+    above.plot(steps, heights, "o-", color=BLUE, markersize=4, label="height of the node")
+    above.plot(steps, [math.nan if z is None else z for z in zeros], "s-", color=ORANGE, markersize=4,
+               label="zero of the spring, where it lets go")
+    above.set(ylabel="height over h v")
+    above.legend(loc="upper right")
+    below.bar(steps, withheld, color=PALE_ORANGE, edgecolor=ORANGE)
+    below.set(xlabel="step", ylabel="withheld W")
+    save(figure, "lead")
+
+
 PICTURES = [contact_geometry, one_step, layers, law_times, stress, tests, dolfinx_error_time, impacts, orders,
-            mujoco_slip]
+            mujoco_slip, lead]
 
 
 def main():
