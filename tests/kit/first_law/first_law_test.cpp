@@ -1,4 +1,4 @@
-// docs/first_law.md: what the page shows builds and works, from its own text.
+// docs/first_law.md and memory_law.md: what the pages show builds and works, from their own text.
 #include "support/law_runner.hpp"
 #include "support/small_batch.hpp"
 
@@ -13,11 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The first code block of the page in a language.
-std::string block(const std::string& language) {
-  std::ostringstream page;
-  page << std::ifstream(ILAW_PAGE).rdbuf();
-  const std::string text = page.str(), fence = "```" + language + "\n";
+// The first code block of a page in a language.
+std::string block(const std::string& language, const char* page = ILAW_PAGE) {
+  std::ostringstream all;
+  all << std::ifstream(page).rdbuf();
+  const std::string text = all.str(), fence = "```" + language + "\n";
   const std::size_t start = text.find(fence) + fence.size();
   return text.substr(start, text.find("```", start) - start);
 }
@@ -153,6 +153,20 @@ TEST(ViscousLaw, InPlainCKeepsEveryRule) {
   const fs::path log = fs::temp_directory_path() / ("ilaw_viscous_" + std::to_string(getpid()) + ".log");
   run(ILAW_BUILD "/bin/ilaw check " ILAW_VISCOUS_C, log);
   fs::remove(log);
+}
+
+// The command of the page, with this compiler; the check judges the balance of what is stored.
+TEST(MemoryLawPage, BuildsInOneCallAndKeepsEveryRule) {
+  const fs::path folder = fs::temp_directory_path() / ("ilaw_memory_law_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const char* const page = ILAW_SOURCE "/docs/memory_law.md";
+  std::ofstream(folder / "glue.cpp") << block("cpp", page);
+  std::string commands =
+      std::regex_replace(block("sh", page), std::regex("PREFIX/include"), ILAW_SOURCE "/api/include");
+  commands = std::regex_replace(commands, std::regex("g\\+\\+"), ILAW_CXX);
+  std::ofstream(folder / "commands.sh") << commands;
+  run("cd " + folder.string() + " && PATH=" ILAW_BUILD "/bin:$PATH sh -e commands.sh", folder / "log");
+  fs::remove_all(folder);
 }
 
 }  // namespace
