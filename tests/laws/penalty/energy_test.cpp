@@ -99,14 +99,23 @@ class ImplicitEnergy : public ::testing::TestWithParam<std::tuple<std::uint32_t,
     for (std::size_t c = 0; c < 3; ++c)
       scale += std::abs(node.r[c]) * (std::abs(previous[c]) + std::abs(node.v[c]) + std::abs(node.v_free[c]));
     const double slack = 1e-12 * scale;
-    ASSERT_GE(impact, -slack) << "draw " << seed << ", x " << before[0] << " -> " << node.state[0];
-    ASSERT_GE(dissipated, -slack) << "draw " << seed << ", slip " << before[1] << " -> " << node.state[1];
-    ASSERT_NEAR(node.energy[ILAW_ENERGY_IMPACT], impact, slack) << "draw " << seed;
-    ASSERT_NEAR(node.energy[ILAW_ENERGY_FRICTION], dissipated, slack) << "draw " << seed;
-    ASSERT_NEAR(node.energy[ILAW_ENERGY_STORED], normal + tangent, 1e-14 * (normal + tangent));
+    const auto draw = [&] { return text_of(node, before, previous, seed); };
+    ASSERT_GE(impact, -slack) << "the normal spring added energy; " << draw();
+    ASSERT_GE(dissipated, -slack) << "friction added energy; " << draw();
+    ASSERT_NEAR(node.energy[ILAW_ENERGY_IMPACT], impact, slack) << "reported as impact; " << draw();
+    ASSERT_NEAR(node.energy[ILAW_ENERGY_FRICTION], dissipated, slack) << "reported as friction; " << draw();
+    ASSERT_NEAR(node.energy[ILAW_ENERGY_STORED], normal + tangent, 1e-14 * (normal + tangent)) << draw();
     if (node.status == ILAW_STICK && springs.tangential < inf_value) {
-      ASSERT_LE(dissipated, slack) << "draw " << seed;
+      ASSERT_LE(dissipated, slack) << "sticking dissipated; " << draw();
     }
+  }
+  // The inputs that repeat a draw, and the results.
+  static std::string text_of(const NodeRun& node, const std::vector<double>& before, const Vector& previous,
+                             int seed) {
+    return "draw " + std::to_string(seed) + ": state " + ::testing::PrintToString(before) + " -> " +
+           ::testing::PrintToString(node.state) + ", v_previous " + ::testing::PrintToString(previous) +
+           ", v_free " + ::testing::PrintToString(node.v_free) + ", H " + ::testing::PrintToString(node.h) +
+           ", gap " + std::to_string(node.gap) + ", impulse " + ::testing::PrintToString(node.r);
   }
 
   Draw random_;
