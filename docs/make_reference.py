@@ -78,8 +78,8 @@ refused before anything runs, with the place (a JSON pointer), the value found a
 
 - Keys in bold are required. Vectors have as many components as the model has dimensions.
 - JSON has no infinity: write the string `"inf"` where a parameter of a law may be infinite.
-- A curve is a list of [time, value], a path a list of [time, displacement...]: linear between its times,
-  which must increase, and constant outside. Either can be [an object](#curves-over-time) instead.
+- A curve is a list of [time, value], a path a list of [time, displacement...]: linear between its
+  times, which must increase, and constant outside; or [an object](#curves-over-time).
 """
 
 NODES = """Nodes are chosen in one of four ways:
