@@ -229,6 +229,6 @@ put_tables() {
     }' "$1" >"$work/page.md"
   cp "$work/page.md" "$1"
 }
-for page in $here/README.md $here/study.md docs/theory/resolved_impact.md; do put_tables "$page"; done
+for page in $here/README.md $here/study.md; do put_tables "$page"; done
 docs/make_pictures.py "$ilaw"
 echo "done: $here"

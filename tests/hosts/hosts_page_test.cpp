@@ -1,5 +1,5 @@
 // The pages for hosts against what they quote: the code of docs/hosts stands in the example hosts, and
-// docs/abi.md names everything that the headers do.
+// docs/abi.md names the enumerators, structs and functions of the headers.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/matchers.hpp"
 
