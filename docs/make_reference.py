@@ -107,7 +107,7 @@ def number(value):
 def limits(part):
     words = [(sign, part[key]) for key, sign in (("minimum", ">="), ("exclusiveMinimum", ">"),
                                                  ("maximum", "<="), ("exclusiveMaximum", "<"))
-             if key in part]
+             if key in part and abs(part[key]) < 1e6]  # a larger bound only keeps numbers from overflow
     return " and ".join(f"{sign} {number(bound)}" for sign, bound in words)
 
 
@@ -148,22 +148,30 @@ def cell(text):
     return text.replace("|", "\\|")
 
 
-def of_all_obstacles(definitions):
-    """Keys that all types of obstacle have with the same meaning: how it moves."""
-    first, *others = [part["properties"] for name, part in definitions.items() if name.startswith("obstacle_")
-                      and "properties" in part]
-    return {key: value for key, value in first.items()
-            if key != "type" and all(one.get(key) == value for one in others)}
+def of_all_types(group, definitions):
+    """Optional keys that most types of a group have with one meaning, such as the motion of an obstacle."""
+    types = {name[len(group) + 1:]: {key: value for key, value in part["properties"].items()
+                                     if key not in part.get("required", [])}
+             for name, part in definitions.items() if name.startswith(group + "_") and "properties" in part}
+    found = {}
+    for key, value in ((key, value) for keys in types.values() for key, value in keys.items() if key != "type"):
+        with_it = [name for name, keys in types.items() if key in keys]
+        if len(with_it) > len(types) / 2 and all(types[name][key] == value for name in with_it):
+            without = [f"`{name}`" for name in types if name not in with_it]
+            note = f" (all but {' and '.join(without)})" if without else ""
+            found[key] = {**value, "description": re.sub("(?=; default: |$)", note, value["description"], count=1)}
+    return found
 
 
 def table(part, definitions, name):
     rows = ["| key | type | default | meaning |", "| --- | --- | --- | --- |"]
     required = part.get("required", [])
-    of_all = of_all_obstacles(definitions)
-    for key, value in {**part["properties"], **(of_all if name == "obstacle" else {})}.items():
+    group = next((group for group in ("obstacle", "load") if name.startswith(group)), None)
+    common = of_all_types(group, definitions) if group else {}
+    for key, value in {**part["properties"], **(common if name == group else {})}.items():
         if key == "type" and "enum" not in value:
             continue  # it is in the heading
-        if name.startswith("obstacle_") and key in of_all:
+        if name != group and key in common:
             continue  # it is in the table of all types
         if "description" not in value:
             sys.exit(f"{SCHEMA.name}: key '{key}' has no description")
