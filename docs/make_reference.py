@@ -48,7 +48,7 @@ SECTIONS = [
     ("Temperature", [("load_temperature", "load of type `temperature`")]),
     ("Heat flux", [("load_heat_flux", "load of type `heat_flux`")]),
     ("Curves over time", [("history_curve", "a curve in place of a list of [time, value]"),
-                          ("path_curve", "a curve in place of a list of [time, displacement...]"),
+                          ("path_curve", "a path in place of a list of [time, displacement...]"),
                           ("sine", "`sine`")]),
     ("Interfaces", [("interface", "entries of `interfaces`"), ("against", "`against`"),
                     ("obstacle", "`obstacle`, common to all types")]),
@@ -63,10 +63,10 @@ SECTIONS = [
 ]
 # Definitions that are values and not objects of their own: as the tables name them.
 VALUES = {
-    "vector": "vector", "nodes": "[nodes](#nodes)", "history": "list of [time, value]",
-    "path": "list of [time, displacement...]", "places": "vector, or list of vectors",
+    "vector": "vector", "nodes": "[nodes](#nodes)", "history": "[curve](#curves-over-time)",
+    "path": "[path](#curves-over-time)", "places": "vector, or list of vectors",
     "near": "[`near`](#nodes)", "box": "[`box`](#nodes)", "history_rows": "list of [time, value]",
-    "path_rows": "list of [time, displacement...]", "obstacle_temperature": "number, or list of [time, value]",
+    "path_rows": "list of [time, displacement...]", "obstacle_temperature": "number, or [curve](#curves-over-time)",
 }
 
 KEYS_HEAD = """# Reference: keys of a scene
@@ -76,9 +76,10 @@ refused before anything runs, with the place (a JSON pointer), the value found a
 [Scenes](../scenes.md) shows how to write one; this page is made from
 [the schema](../../host_mock/schema/scene.schema.json) by `docs/make_reference.py keys`.
 
-- Vectors have as many components as the model has dimensions. Units are your own, if consistent.
+- Keys in bold are required. Vectors have as many components as the model has dimensions.
 - JSON has no infinity: write the string `"inf"` where a parameter of a law may be infinite.
-- Values over time are linear between their times, which must increase, and constant outside.
+- A curve is a list of [time, value], a path a list of [time, displacement...]: linear between its
+  times, which must increase, and constant outside; or [an object](#curves-over-time).
 """
 
 NODES = """Nodes are chosen in one of four ways:
@@ -106,7 +107,7 @@ def number(value):
 def limits(part):
     words = [(sign, part[key]) for key, sign in (("minimum", ">="), ("exclusiveMinimum", ">"),
                                                  ("maximum", "<="), ("exclusiveMaximum", "<"))
-             if key in part]
+             if key in part and abs(part[key]) < 1e6]  # a larger bound only keeps numbers from overflow
     return " and ".join(f"{sign} {number(bound)}" for sign, bound in words)
 
 
@@ -147,21 +148,39 @@ def cell(text):
     return text.replace("|", "\\|")
 
 
-def table(part, definitions):
+def of_all_types(group, definitions):
+    """Optional keys that most types of a group have with one meaning, such as the motion of an obstacle."""
+    types = {name[len(group) + 1:]: {key: value for key, value in part["properties"].items()
+                                     if key not in part.get("required", [])}
+             for name, part in definitions.items() if name.startswith(group + "_") and "properties" in part}
+    found = {}
+    for key, value in ((key, value) for keys in types.values() for key, value in keys.items() if key != "type"):
+        with_it = [name for name, keys in types.items() if key in keys]
+        if len(with_it) > len(types) / 2 and all(types[name][key] == value for name in with_it):
+            without = [f"`{name}`" for name in types if name not in with_it]
+            note = f" (all but {' and '.join(without)})" if without else ""
+            found[key] = {**value, "description": re.sub("(?=; default: |$)", note, value["description"], count=1)}
+    return found
+
+
+def table(part, definitions, name):
     rows = ["| key | type | default | meaning |", "| --- | --- | --- | --- |"]
     required = part.get("required", [])
-    for key, value in part["properties"].items():
+    group = next((group for group in ("obstacle", "load") if name.startswith(group)), None)
+    common = of_all_types(group, definitions) if group else {}
+    for key, value in {**part["properties"], **(common if name == group else {})}.items():
         if key == "type" and "enum" not in value:
             continue  # it is in the heading
+        if name != group and key in common:
+            continue  # it is in the table of all types
         if "description" not in value:
             sys.exit(f"{SCHEMA.name}: key '{key}' has no description")
         meaning, _, default = value["description"].partition("; default: ")
         if "default" in value:
             default = f"`{json.dumps(value['default'])}`"
-        elif key in required:
-            default = "required"
+        shown = f"**`{key}`**" if key in required else f"`{key}`"
         rows.append("| " + " | ".join(cell(text) for text in
-                                      (f"`{key}`", kind(value, definitions), default, meaning)) + " |")
+                                      (shown, kind(value, definitions), default, meaning)) + " |")
     return "\n".join(rows)
 
 
@@ -185,7 +204,7 @@ def keys_page():
             about = part.get("description", "") if name else ""
             if words:
                 text.append((words[0].upper() + words[1:]) + (": " + about if about else ":") + "\n")
-            text.append(table(part, definitions) + "\n")
+            text.append(table(part, definitions, name) + "\n")
     return wrapped("\n".join(text))
 
 

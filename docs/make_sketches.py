@@ -9,6 +9,7 @@ Needs matplotlib (python3-matplotlib). The same tables give the same bytes.
 # SPDX-License-Identifier: BSD-3-Clause
 
 import csv
+import io
 import math
 import re
 import sys
@@ -33,8 +34,11 @@ plt.rcParams.update({
 
 
 def save(figure, name):
-    figure.savefig(DOCS / "img" / f"{name}.svg", metadata={"Date": None}, bbox_inches="tight", pad_inches=0.08)
+    """One line a picture: nobody reads the paths, and thousands of lines would hide other changes."""
+    text = io.StringIO()
+    figure.savefig(text, format="svg", metadata={"Date": None}, bbox_inches="tight", pad_inches=0.08)
     plt.close(figure)
+    (DOCS / "img" / f"{name}.svg").write_text(re.sub(r"\s*\n\s*", " ", text.getvalue()).strip() + "\n")
 
 
 def canvas(width, height):
@@ -219,10 +223,8 @@ def stress():
 
 
 def tests():
-    page = (DOCS / "reliability.md").read_text()
     mutants = page_rows("reliability.md", "| area | mutants | run | caught")
     coverage = page_rows("reliability.md", "| | lines | branches")
-    assert mutants and coverage and page
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 2.5), gridspec_kw={"wspace": 0.35})
     for k, row in enumerate(mutants):
         share = 100 * int(row["caught"]) / int(row["run"])
@@ -379,8 +381,86 @@ def lead():
     save(figure, "lead")
 
 
+# ---- the equations of laws
+
+def curves(name, x_label, y_label, lines, **more):
+    """A small picture of a law: its equation as curves over one quantity."""
+    figure, axes = plt.subplots(figsize=(4.6, 2.6))
+    for (x, y, label), color in zip(lines, (BLUE, ORANGE, GREEN)):
+        axes.plot(x, y, color=color, linewidth=2, label=label)
+    axes.set(xlabel=x_label, ylabel=y_label, **more)
+    axes.legend(fontsize=8.5)
+    save(figure, name)
+
+
+def spaced(first, last, count=200):
+    return [first + (last - first) * k / (count - 1) for k in range(count)]
+
+
+def slip_weakening():
+    """The fault of docs/results/fault.md."""
+    curves("slip_weakening", "slip [m]", "friction coefficient",
+           [([0, 0.4, 0.8], [0.677, 0.525, 0.525], "0.677 to 0.525 over 0.4 m")], ylim=(0.5, 0.7))
+
+
+def rate_and_state():
+    """The slip rate jumps to ten times its value, with f0 = 0.6, a = 0.01, b = 0.015."""
+    slips = spaced(0, 6)
+    of_theta = lambda theta: 0.01 * math.asinh(5 * math.exp((0.6 + 0.015 * math.log(theta)) / 0.01))  # noqa: E731
+    aging = [of_theta(math.exp(-x) + 0.1 * (1 - math.exp(-x))) for x in slips]
+    slip = [of_theta(0.1 * math.exp(math.exp(-x) * math.log(10))) for x in slips]
+    before = ([-1, 0], [0.6, 0.6])
+    curves("rate_and_state", "slip over $D_c$, after the slip rate rose tenfold", "friction coefficient",
+           [(before[0] + slips, before[1] + mu, label) for mu, label in ((aging, "aging"), (slip, "slip"))])
+
+
+def rubber():
+    """0.4 to 1.2 at 0.1 m/s and 293 K, width 0.5."""
+    decades = spaced(-5, 3)
+    lines = []
+    for kelvin in (273, 293, 313):
+        shift = -8.86 * (kelvin - 293) / (101.5 + kelvin - 293)
+        lines.append(([10**x for x in decades],
+                      [0.4 + 0.8 * math.exp(-0.25 * (x + shift + 1)**2) for x in decades], f"{kelvin} K"))
+    curves("rubber", "slip rate [m/s]", "friction coefficient", lines, xscale="log")
+
+
+def table_friction():
+    """Linear between the points of a table over slip rate and temperature, constant beyond."""
+    curves("table_friction", "slip rate [m/s]", "friction coefficient",
+           [([0, 1, 5, 7], [0.6, 0.5, 0.4, 0.4], "293 K"), ([0, 1, 5, 7], [0.45, 0.375, 0.3, 0.3], "443 K"),
+            ([0, 1, 5, 7], [0.3, 0.25, 0.2, 0.2], "593 K")], ylim=(0, 0.7))
+
+
+def rolling():
+    spins = spaced(-3, 3, 7)
+    held = [max(-1, min(1, w)) for w in spins]
+    curves("rolling", "free spin over the largest spin that is stopped", "over its limit",
+           [(spins, [-m for m in held], "moment"), (spins, [w - m for w, m in zip(spins, held)], "spin after")])
+
+
+def conductance():
+    steps = spaced(0, 4)
+    curves("conductance", "x: conductance, area and step over the capacities", "heat over that to equilibrium",
+           [(steps, [1 - math.exp(-x) for x in steps], "conductance"), ([0, 1.6], [0, 1.6], "explicit exchange")])
+
+
+def rccm():
+    """Opened at a constant rate, in units of the opening and the traction at which adhesion begins to fall."""
+    openings, lines = spaced(0, 4, 2001), []
+    for viscosity, label in ((1e-3, "slow"), (1.0, "fast")):
+        intensity, tractions = 1.0, []
+        for u in openings:
+            fall = max(0.0, intensity * u * u - 1) * 0.002
+            intensity -= fall / (viscosity + 0.002 * u * u)
+            tractions.append(intensity**2 * u)
+        lines.append((openings, tractions, label))
+    curves("rccm", "opening", "traction", lines)
+
+
 PICTURES = [contact_geometry, one_step, layers, law_times, stress, tests, dolfinx_error_time, impacts, orders,
-            mujoco_slip, lead]
+            mujoco_slip, lead, slip_weakening, rate_and_state, rubber, table_friction, rolling, conductance,
+            rccm]
 
 
 def main():

@@ -207,7 +207,8 @@ measure_share() {
 }
 if wanted share; then measure_share; fi
 
-# ---- the tables into the pages: <!-- table: NAME --> ... <!-- end -->, numbers in three digits, - where there is none
+# ---- the tables into the pages: <!-- table: NAME [CELL] --> ... <!-- end -->, all rows or those with a cell;
+# numbers in three digits, - where there is none
 put_tables() {
   awk -v tables="$here/tables" '
     function shown(x) { return x ~ /^[-+]?[0-9.]+(e[-+]?[0-9]+)?$/ ? sprintf("%.3g", x) : x }
@@ -219,15 +220,15 @@ put_tables() {
     /^<!-- end -->/ { skip = 0 }
     !skip { print }
     /^<!-- table: / {
-      file = tables "/" $3 ".csv"; first = 1; skip = 1
+      file = tables "/" $3 ".csv"; first = 1; skip = 1; only = $4 == "-->" ? "" : "," $4 ","
       while ((getline line < file) > 0) {
-        print row(line)
+        if (first || only == "" || index(line, only)) print row(line)
         if (first) { gsub(/[^,]+/, "---", line); gsub(/,/, " | ", line); print "| " line " |"; first = 0 }
       }
       close(file)
     }' "$1" >"$work/page.md"
   cp "$work/page.md" "$1"
 }
-for page in $here/README.md $here/study.md docs/theory/resolved_impact.md; do put_tables "$page"; done
+for page in $here/README.md $here/study.md; do put_tables "$page"; done
 docs/make_pictures.py "$ilaw"
 echo "done: $here"

@@ -221,7 +221,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-// postit_test1 by hand (docs/theory/shipped_scenes.md): a pull breaks the bond four times, and each landing
+// postit_test1 by hand (its `doc`): a pull breaks the bond four times, and each landing
 // heals it.
 TEST(Events, AreAllThereWhateverTheRows) {
   json scene = shipped("postit_test1");

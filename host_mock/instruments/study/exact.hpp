@@ -1,5 +1,5 @@
-// exact.hpp - solutions in closed form of some scenes, to measure errors against. Derivations:
-// docs/theory/shipped_scenes.md.
+// exact.hpp - solutions in closed form of some scenes, to measure errors against. Derivations: the
+// `doc` of each scene.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -107,7 +107,7 @@ ExactNode glued_bar(const Scene& scene) {
 
 // A bar dropped on a plane, which it leaves as a whole after 2L/c: undeformed before the first impact,
 // compressed by twice its weight after it, and undeformed again after the second if the flight between
-// took a whole number of its vibrations, which then bring its end back (docs/theory/shipped_scenes.md).
+// took a whole number of its vibrations, which then bring its end back (bouncing_bar.json).
 ExactNode bouncing_bar(const Scene& scene) {
   const std::string wanted = "one bar at rest, undeformed and under gravity, above a plane";
   const auto [model, body, interface, loads, parameters] = one_body(scene, "bars", wanted);

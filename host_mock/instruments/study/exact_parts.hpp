@@ -1,5 +1,5 @@
 // exact_parts.hpp - parts of exact solutions, and the solutions of elastic bars on walls, on planes, on each
-// other, glued, and of a point under the Post-it law. Derivations: docs/theory/shipped_scenes.md.
+// other, glued, and of a point under the Post-it law. Derivations: the `doc` of each scene.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
