@@ -11,7 +11,7 @@
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // The nodes of a part of a batch.
-inline constexpr int block_nodes = 128;  // at most
+inline constexpr int block_nodes = 64;  // at most: their copies stay in the first cache
 struct node_range {
   std::int64_t first, count;
   bool listed;

@@ -72,7 +72,8 @@ tally walk_with(const instance<Law>& made, const ilaw_batch& batch,
   const Law law = made.at(batch.time);
   constexpr int columns = 2 * (state_numbers<Law> + (has_history<Law> || has_state<Law> ? 6 : 0));
   alignas(64) double state_scratch[columns * block_nodes + 1];
-  batch_walk<Host, Number, has_window<Law>> walk(made, batch, state_scratch);
+  alignas(64) Number parameter_scratch[parameter_count<Law> * block_nodes];
+  batch_walk<Host, Number, has_window<Law>> walk(made, batch, state_scratch, parameter_scratch);
   return walk.run(loop, &law);
 }
 template <class Law>

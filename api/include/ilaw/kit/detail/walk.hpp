@@ -18,22 +18,26 @@ bool stays(const Array& a, int components) {
 template <class Host, class Number = Host, bool HasWindow = false>
 class batch_walk {
  public:
-  // Copies of 64 nodes stay in the first cache; windows cost more than them.
-  static constexpr std::int64_t block = HasWindow ? block_nodes : 64;
   using run_function = void (*)(const void* law, const view<Number>&, tally&);
 
-  // state_scratch: block_nodes for each number of state_in, state_out and twice the frame.
-  batch_walk(const instance_base& made, const ilaw_batch& batch, double* state_scratch)
-      : made_(made), b_(batch), d_(static_cast<int>(made.dimension)), state_scratch_(state_scratch) {}
+  // state_scratch: block_nodes for each number of state_in, state_out and twice the frame; parameter_scratch:
+  // for each parameter of the law.
+  batch_walk(const instance_base& made, const ilaw_batch& batch, double* state_scratch,
+             Number* parameter_scratch)
+      : made_(made),
+        b_(batch),
+        d_(static_cast<int>(made.dimension)),
+        state_scratch_(state_scratch),
+        parameter_scratch_(parameter_scratch) {}
 
   [[gnu::noinline]] tally run(run_function loop, const void* law) {
     tally all;
     if (made_.window.duration == 0.0 && all_stay()) {
       run_part(node_range(b_, 0, b_.node_count), loop, law, all);
     } else {
-      for (std::int64_t first = 0; first < b_.node_count; first += block) {
+      for (std::int64_t first = 0; first < b_.node_count; first += block_nodes) {
         const std::int64_t left = b_.node_count - first;
-        run_part(node_range(b_, first, left < block ? left : block), loop, law, all);
+        run_part(node_range(b_, first, left < block_nodes ? left : block_nodes), loop, law, all);
       }
     }
     return all;
@@ -93,8 +97,8 @@ class batch_walk {
   static void prefetch_block(const T* values, std::int64_t stride, std::int64_t component,
                              const node_range& n) {
     if (n.listed || component != 1 || stride > 8) return;
-    for (std::int64_t k = 0; k < block * stride; k += 64 / static_cast<int>(sizeof(T)))
-      __builtin_prefetch(values + (n.first + block) * stride + k);
+    for (std::int64_t k = 0; k < block_nodes * stride; k += 64 / static_cast<int>(sizeof(T)))
+      __builtin_prefetch(values + (n.first + block_nodes) * stride + k);
   }
 
   array<const Number> gather(const ilaw_input& a, int components, const node_range& n, Number* copy) const {
@@ -273,7 +277,7 @@ class batch_walk {
     if (read & ILAW_INPUT_AREA) v.area = gather_scalar(b_.area, n, s_.area);
     for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
       v.parameters[made_.per_node_parameters[k]] =
-          gather_scalar(b_.per_node_parameters[k], n, s_.parameters[k]);
+          gather_scalar(b_.per_node_parameters[k], n, parameter_scratch_ + k * block_nodes);
   }
   void open_outputs(view<Number>& v, const node_range& n) {
     v.impulse = aim(b_.impulse, d_, n, s_.impulse);
@@ -338,7 +342,6 @@ class batch_walk {
     Number normal[3 * block_nodes], tangent[3 * block_nodes];
     Number spin_free[3 * block_nodes], spin_previous[3 * block_nodes];
     Number delassus[6 * block_nodes], gap[block_nodes], gap_offset[block_nodes], area[block_nodes];
-    Number parameters[most_parameters][block_nodes];
     Number impulse[3 * block_nodes], velocity[3 * block_nodes], energy[ILAW_ENERGY_COUNT * block_nodes];
     Number moment[3 * block_nodes], spin[3 * block_nodes];
     Number amounts[most_amounts][block_nodes];
@@ -349,6 +352,7 @@ class batch_walk {
   const ilaw_batch& b_;
   const int d_;
   double* const state_scratch_;
+  Number* const parameter_scratch_;
   scratch s_;
 };
 
