@@ -255,11 +255,13 @@ bool Contacts::fill(Block& block, std::size_t lane, std::int64_t k, const Bodies
   if (has_spins()) block.put(layout_.impulse + 3, lane, start(theirs_.moment, k));
   for (int c = 0; c < layout_.width; ++c)
     block.column(layout_.direction + c)[lane] = block.column(layout_.change + c)[lane] = 0.0;
+  bool acts = true;
   if (layout_.arm >= 0) {
     const bool is_wall = kind_ != Kind::weighted && end(k, 1) == bodies.wall();
     const Vector arm = vector(given_.arm, k, 3);
     const Vector other = is_wall ? Vector{} : vector(given_.counterpart_arm, k, 3);
     if (is_transverse() && (leads_aside(arm, normal) || leads_aside(other, normal))) return false;
+    acts = is_finite(normal) && is_finite(arm) && is_finite(other);
     if (kind_ == Kind::sphere || kind_ == Kind::spin) {
       block.column(layout_.arm)[lane] = dot(arm, normal);
       block.column(layout_.counterpart_arm)[lane] = dot(other, normal);
@@ -270,6 +272,8 @@ bool Contacts::fill(Block& block, std::size_t lane, std::int64_t k, const Bodies
   }
   if (layout_.weight >= 0) fill_weights(block, lane, k);
   fill_delassus(block, lane, bodies);
+  // Its law finds bad input and an impulse of 0, whose moment would be no number at the bodies.
+  for (std::uint32_t e = 0; !acts && e < ends(); ++e) block.ends[e * block.stride + lane] = bodies.wall();
   if (layout_.wall >= 0) block.put(layout_.wall, lane, vector(given_.wall_velocity, k, dimension_));
   if (layout_.wall >= 0 && has_spins()) block.put(layout_.wall + 3, lane, vector(given_.wall_spin, k, 3));
   if (layout_.gap >= 0) block.column(layout_.gap)[lane] = value(theirs_.gap, k);

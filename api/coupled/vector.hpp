@@ -29,6 +29,7 @@ inline Vector cross(const Vector& a, const Vector& b) {
 }
 inline Vector scaled(const Vector& a, const Vector& b) { return {a[0] * b[0], a[1] * b[1], a[2] * b[2]}; }
 inline bool is_zero(const Vector& a) { return a[0] == 0.0 && a[1] == 0.0 && a[2] == 0.0; }
+inline bool is_finite(const Vector& a) { return 0.0 * a[0] + 0.0 * a[1] + 0.0 * a[2] == 0.0; }
 inline double largest(const Vector& a) {
   return std::fmax(std::fabs(a[0]), std::fmax(std::fabs(a[1]), std::fabs(a[2])));
 }

@@ -8,17 +8,20 @@ import collections
 import json
 import os
 import pathlib
-import random
 import resource
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import typing
 import unittest
 import zlib
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(SOURCE / "tests" / "support"))
+from state_machine import Broken, demand, search, shrunk  # noqa: E402
+
 FIXED_SEED = 57
 SEED = int(os.environ.get("ILAW_RUN_FOLDER_SEED", FIXED_SEED))
 SEQUENCES = int(os.environ.get("ILAW_RUN_FOLDER_SEQUENCES", "60"))
@@ -44,15 +47,6 @@ class Damage(typing.NamedTuple):
 
 class Move(typing.NamedTuple):
     pass
-
-
-class Broken(AssertionError):
-    pass
-
-
-def demand(condition, *what):
-    if not condition:
-        raise Broken(" ".join(map(str, what)))
 
 
 # ---- what is known of a run without the program ----------------------------------------------------------
@@ -320,35 +314,10 @@ def failure_of(actions, world, seen):
     return ""
 
 
-def simpler(actions):
-    """Sequences with less in them, the shortest first."""
-    for size in (len(actions) // 2, len(actions) // 4, 1):
-        for k in range(0, len(actions), max(size, 1)):
-            yield actions[:k] + actions[k + max(size, 1):]
-    for k, action in enumerate(actions):
-        if isinstance(action, Run):
-            for fewer in ({"fault": None, "meanwhile": ""}, {"threads": 1}, {"scene": "ball"}):
-                if (plain := action._replace(**fewer)) != action:
-                    yield [*actions[:k], plain, *actions[k + 1:]]
-
-
-def shrunk(actions, fails):
-    while True:
-        less = next((fewer for fewer in simpler(actions) if fails(fewer)), None)
-        if less is None:
-            return actions
-        actions = less
-
-
-def search(world, seed, count):
-    """The shortest sequence that fails, why, and what happened on the way."""
-    draw, seen = random.Random(seed), collections.Counter()
-    for _ in range(count):
-        actions = drawn_sequence(draw, world)
-        if failure_of(actions, world, seen):
-            short = shrunk(actions, lambda fewer: failure_of(fewer, world, seen))
-            return short, failure_of(short, world, seen), seen
-    return [], "", seen
+def plainer(action):
+    if isinstance(action, Run):
+        for fewer in ({"fault": None, "meanwhile": ""}, {"threads": 1}, {"scene": "ball"}):
+            yield action._replace(**fewer)
 
 
 class RunFolder(unittest.TestCase):
@@ -357,7 +326,9 @@ class RunFolder(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.home)
 
     def test_keeps_its_promises_whatever_happens(self):
-        actions, why, seen = search(World(self.home), SEED, SEQUENCES)
+        world, seen = World(self.home), collections.Counter()
+        actions, why = search(SEED, SEQUENCES, lambda draw: drawn_sequence(draw, world),
+                              lambda drawn: failure_of(drawn, world, seen), plainer)
         self.assertFalse(actions, f"seed {SEED}: {why}\n" + "\n".join(map(str, actions)))
         print(f"seed {SEED}, {SEQUENCES} sequences:", dict(sorted(seen.items())))
         if SEED != FIXED_SEED:
@@ -374,7 +345,7 @@ class RunFolder(unittest.TestCase):
         def fails(fewer):
             killed = [k for k, action in enumerate(fewer) if isinstance(action, Run) and action.fault]
             return any(isinstance(action, Run) and action.resumes for k in killed for action in fewer[k:])
-        self.assertEqual(shrunk(actions, fails), [Run("ball", fault=("any", 9, "kill")), Run("ball", True)])
+        self.assertEqual(shrunk(actions, fails, plainer), [Run("ball", fault=("any", 9, "kill")), Run("ball", True)])
 
 
 if __name__ == "__main__":

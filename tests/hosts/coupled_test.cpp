@@ -1,5 +1,5 @@
 // Contacts that share bodies (ilaw/coupled.h) against what is known without them: weight, momentum, energy,
-// and the same contacts in another order or on two ranks.
+// and the same contacts on two ranks. Other orders, threads and problems: python/test_solver_machine.py.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "coupled_scene.hpp"
 
@@ -13,7 +13,6 @@
 #include <barrier>
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
 #include <string>
 #include <thread>
 #include <vector>
@@ -84,57 +83,6 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   double largest = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::fabs(a[i] - b[i]));
   return largest;
-}
-
-// Contacts between any two of 27 spheres, in any direction: their colors depend on their order.
-Scene tangle(ilaw::interface law) {
-  Scene scene(std::move(law), 27);
-  Random random(4);
-  for (std::int32_t a = 0; a < 27; ++a)
-    for (std::int32_t b = 0; b < a; ++b) {
-      const double angle = 3.0 * random();
-      if (random() > 0.5) scene.add(a, b, 0.0, {0.6 * std::cos(angle), 0.6 * std::sin(angle), 0.8});
-    }
-  for (double& x : scene.v) x = random();
-  for (double& x : scene.w) x = random();
-  scene.initialise();
-  return scene;
-}
-
-// Contacts are visited in the order of their bodies: no bit depends on the order of the arrays, converged or
-// not.
-TEST(Coupled, OrderOfContactsDoesNotMatter) {
-  for (const auto& law : {+[] { return friction(0.4); }, +tie}) {
-    Scene forward = tangle(law());
-    Scene shuffled = tangle(law());
-    std::vector<std::size_t> order(shuffled.body.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::shuffle(order.begin(), order.end(), Random(1).engine);
-    const Scene from = tangle(law());
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      shuffled.body[k] = from.body[order[k]];
-      shuffled.counterpart[k] = from.counterpart[order[k]];
-      for (std::size_t c = 0; c < 3; ++c) {
-        shuffled.normal[3 * k + c] = from.normal[3 * order[k] + c];
-        shuffled.arm[3 * k + c] = from.arm[3 * order[k] + c];
-        shuffled.other_arm[3 * k + c] = from.other_arm[3 * order[k] + c];
-      }
-    }
-    EXPECT_EQ(velocities_after(forward, 1e-2), velocities_after(shuffled, 1e-2)) << law().law().id;
-  }
-}
-
-// A solver keeps its memory, and none of the numbers in it.
-TEST(Coupled, GivesTheSameBitsAfterAnotherProblem) {
-  Scene fresh = cube(friction(0.4), 7), again = cube(friction(0.4), 7), other = tangle(tie());
-  for (double& x : other.v) x *= 1e3;
-  for (int n = 0; n < 3; ++n) other.step(g, 1e-12);
-  std::swap(other.solver, again.solver);
-  const ilaw_coupled_report first = fresh.step(g, 1e-10), second = again.step(g, 1e-10);
-  EXPECT_EQ(first.sweeps, second.sweeps);
-  EXPECT_EQ(first.residual, second.residual);
-  EXPECT_EQ(first.first_speed, second.first_speed);
-  EXPECT_EQ(fresh.v, again.v);
 }
 
 // Two ranks as two threads: bodies 0 to 27 with those of the other as copies behind, each contact on one

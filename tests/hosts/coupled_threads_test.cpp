@@ -10,9 +10,6 @@
 #include <thread>
 #include <vector>
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 namespace {
 
 using namespace coupled_scene;
@@ -126,49 +123,6 @@ TEST_P(CoupledThreads, NameTheBadContactsOfOne) {
   EXPECT_EQ(count[0], 2);
   EXPECT_EQ(count[1], 2);
   EXPECT_EQ(first[0], first[1]);
-}
-
-// More threads than before, fewer, and none beside the caller's: by one solver.
-TEST(CoupledThreads, MayChangeBetweenSolves) {
-  std::vector<double> impulse;
-  ilaw::coupled solver;
-  for (const std::uint32_t threads : {0U, 2U, 4U, 2U, 256U, 0U}) {
-    Scene scene = lattice(cases[0]);
-    std::swap(scene.solver, solver);
-    scene.threads = threads;
-    scene.step(g, 1e-12, 5);
-    std::swap(scene.solver, solver);
-    if (impulse.empty()) impulse = scene.impulse;
-    EXPECT_TRUE(scene.impulse == impulse) << threads;
-  }
-}
-
-TEST(CoupledThreads, AreMadeAnewInAChildOfFork) {
-  Scene one = lattice(cases[0]);
-  one.step(g, 1e-12, 5);
-  // Two solvers: in the child a new thread of the first may have the name of an old one of the second.
-  Scene first = lattice(cases[0]), second = lattice(cases[0]);
-  Scene later = lattice(cases[0]), last = lattice(cases[0]);
-  for (Scene* scene : {&first, &second, &later, &last}) scene->threads = 2;
-  first.step(g, 1e-12, 5);
-  second.step(g, 1e-12, 5);
-  std::swap(first.solver, later.solver);
-  std::swap(second.solver, last.solver);
-  const pid_t child = fork();
-  if (child == 0) {
-    alarm(60);  // instead of waiting for threads that are not there
-    later.step(g, 1e-12, 5);
-    last.step(g, 1e-12, 5);
-    const bool same = later.impulse == one.impulse && last.impulse == one.impulse;
-    later.solver = {};
-    last.solver = {};
-    _exit(same ? 0 : 1);
-  }
-  int status = -1;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_EQ(status, 0);
-  later.step(g, 1e-12, 5);
-  EXPECT_TRUE(later.impulse == one.impulse);
 }
 
 INSTANTIATE_TEST_SUITE_P(Forms, CoupledThreads, ::testing::ValuesIn(cases),

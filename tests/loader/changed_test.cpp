@@ -44,26 +44,6 @@ TEST_F(Changed, RefusesUntilTheOldOneIsGone) {
   EXPECT_EQ(answer(file), "Number 2");
 }
 
-TEST_F(Changed, RefusesFilesWrittenTo) {
-  install(file, 1);
-  auto old = std::make_unique<ilaw::library>(file.string());
-  write_over(file, bytes_of(2), 0);
-  EXPECT_EQ(answer(file), changed + "its file was written to and has " + size + until);
-  old.reset();
-  EXPECT_EQ(answer(file), "Number 2");
-}
-
-TEST_F(Changed, SharesHardLinks) {
-  install(file, 1);
-  const ilaw::library old(file.string());
-  const fs::path other = file.parent_path() / "other.so";
-  fs::create_hard_link(file, other);
-  EXPECT_EQ(ilaw::library(other.string()).get(), old.get());
-  EXPECT_EQ(ilaw::library(file.string()).get(), old.get());
-  fs::remove(other);
-  EXPECT_EQ(ilaw::library(file.string()).get(), old.get());
-}
-
 // dlclose leaves it loaded, and dlopen would give it again by its path.
 TEST_F(Changed, RefusesWhenTheOldOneStaysLoaded) {
   fs::copy_file(ILAW_TEST_PLUGINS "/kept.so", file);

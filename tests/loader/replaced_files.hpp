@@ -5,11 +5,13 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -65,6 +67,33 @@ inline void install(const fs::path& file, int version) {
   const fs::path made = file.string() + ".made";
   write_over(made, bytes_of(version), 0);
   fs::rename(made, file);
+}
+
+// What a process of its own throws or dies of, empty where it does not.
+template <class Run>
+std::string fault_in_child(const Run& run) {
+  std::array<int, 2> ends{};
+  must(pipe(ends.data()) == 0, "no pipe");
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(60);  // instead of waiting for a lock that a thread of the parent has
+    std::string fault;
+    try {
+      run();
+    } catch (const std::exception& error) {
+      fault = error.what();
+    }
+    _exit(write(ends[1], fault.data(), fault.size()) == static_cast<ssize_t>(fault.size()) ? 0 : 1);
+  }
+  close(ends[1]);
+  std::string fault(1024, '\0');
+  const ssize_t got = read(ends[0], fault.data(), fault.size());
+  close(ends[0]);
+  int status = 0;
+  must(waitpid(child, &status, 0) == child, "no child");
+  fault.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+  if (WIFSIGNALED(status)) return "signal " + std::to_string(WTERMSIG(status));
+  return fault.empty() && status != 0 ? "exit status " + std::to_string(status) : fault;
 }
 
 }  // namespace ilaw::testing::replaced_files

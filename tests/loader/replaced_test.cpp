@@ -8,7 +8,6 @@
 #include "support/random.hpp"
 
 #include <fcntl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +19,8 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -45,11 +46,13 @@ enum class Act {
   describe,
   close,
   destroy,
+  fork,     // a child opens the path, and the interfaces answer there as here
+  threads,  // three at once open the path, ask the law and close it
   count
 };
 constexpr std::array<const char*, static_cast<std::size_t>(Act::count)> act_names = {
-    "install", "write",      "copy",   "copy_again", "truncate", "remove",   "link",  "move",
-    "open",    "open_named", "search", "create",     "evaluate", "describe", "close", "destroy"};
+    "install",    "write",  "copy",   "copy_again", "truncate", "remove", "link",    "move", "open",
+    "open_named", "search", "create", "evaluate",   "describe", "close",  "destroy", "fork", "threads"};
 constexpr std::array<const char*, 2> file_names = {"left", "right"};
 
 struct Command {
@@ -158,6 +161,10 @@ class Machine {
         return close_one(c.choice);
       case Act::destroy:
         return destroy_one(c.choice);
+      case Act::fork:
+        return fork_one(c);
+      case Act::threads:
+        return open_in_threads(c.file);
       case Act::count:
         break;
     }
@@ -185,14 +192,40 @@ class Machine {
     content(c.file)->version = c.version;
   }
 
-  // Which refusal is right: one text, or none, or either where only the names of a file changed.
-  void open_and_judge(int file, const std::string& text,
-                      ilaw_result(ILAW_CALL* open)(const char*, ilaw_library**, char*, std::size_t)) {
-    const std::shared_ptr<Content>& on_disk = content(file);
-    std::array<char, 1024> message{};
+  struct Answer {
+    ilaw_result code = ILAW_OK;
     ilaw_library* library = nullptr;
-    const ilaw_result code = open(text.c_str(), &library, message.data(), message.size());
-    const std::string said(message.data());
+    std::string said;
+  };
+  using Open = ilaw_result(ILAW_CALL*)(const char*, ilaw_library**, char*, std::size_t);
+  static Answer answer_of(const std::string& text, Open open) {
+    Answer answer;
+    std::array<char, 1024> message{};
+    answer.code = open(text.c_str(), &answer.library, message.data(), message.size());
+    answer.said = message.data();
+    return answer;
+  }
+
+  void open_and_judge(int file, const std::string& text, Open open) {
+    const Answer answer = answer_of(text, open);
+    judge(file, answer);
+    if (!answer.library) return;
+    auto known = std::find_if(libraries_.begin(), libraries_.end(),
+                              [&](const OpenLibrary& one) { return one.library == answer.library; });
+    if (known == libraries_.end())
+      known = libraries_.insert(known, {answer.library, file, content(file), *content(file)});
+    else
+      known->then.names = content(file)->names;
+    must(known->content == content(file), "the object of another file");
+    ++known->users;
+    handles_.push_back(&*known);
+    judge_title(*known);
+  }
+
+  // Which refusal is right: one text, or none, or either where only the names of a file changed.
+  void judge(int file, const Answer& answer) {
+    const std::shared_ptr<Content>& on_disk = content(file);
+    const auto& [code, library, said] = answer;
     must((code == ILAW_OK) == (library != nullptr), "code " + std::to_string(code) + ", " + said);
     if (!on_disk) return must(code == ILAW_NOT_FOUND, "no such file, but: " + said);
     bool must_refuse = false, may_refuse = false, is_open = false;
@@ -203,23 +236,50 @@ class Machine {
       is_open = is_open || (is_same && !one.was_written());
     }
     must_refuse = must_refuse && !is_open;
-    const std::string changed = path(file).string() + ": changed since it was opened";
-    const bool is_refused = code == ILAW_BAD_LIBRARY && said.starts_with(changed);
+    const std::string changed = path(file).string() + ": changed since it was opened: ";
+    const bool is_refused = code == ILAW_BAD_LIBRARY && said.starts_with(changed) &&
+                            said.ends_with(", expected the file of " + size_ +
+                                           " bytes until its last handle and interface are closed");
     if (must_refuse) return must(is_refused, "opened, or refused for another reason: " + said);
     if (may_refuse && is_refused) return;
     if (on_disk->version == 0)
       return must(code == ILAW_BAD_LIBRARY && said.find(": truncated at ") != std::string::npos, said);
     must(code == ILAW_OK, "refused: " + said);
-    auto known = std::find_if(libraries_.begin(), libraries_.end(),
-                              [library](const OpenLibrary& one) { return one.library == library; });
-    if (known == libraries_.end())
-      known = libraries_.insert(known, {library, file, on_disk, *on_disk});
-    else
-      known->then.names = on_disk->names;
-    must(known->content == on_disk, "the object of another file");
-    ++known->users;
-    handles_.push_back(&*known);
-    judge_title(*known);
+  }
+
+  // The child has what this process has loaded, and may not disturb it.
+  void fork_one(const Command& c) {
+    must(fault_in_child([&] {
+           open_and_judge(c.file, path(c.file).string(), ilaw_library_open);
+           for (int k = 0; k < static_cast<int>(interfaces_.size()); ++k) evaluate(k);
+           while (!handles_.empty() && !handles_.back()->is_torn)
+             close_one(static_cast<int>(handles_.size()) - 1);
+         }).empty(),
+         "in a child");
+  }
+
+  // They agree with each other and with the disk, and leave nothing open.
+  void open_in_threads(int file) {
+    std::array<Answer, 3> answers;
+    std::array<std::string, 3> titles;
+    {
+      std::vector<std::jthread> threads;
+      for (std::size_t t = 0; t < answers.size(); ++t)
+        threads.emplace_back([&, t] {
+          answers.at(t) = answer_of(path(file).string(), ilaw_library_open);
+          if (answers.at(t).library) titles.at(t) = ilaw_library_law(answers.at(t).library, "zero")->title;
+        });
+    }
+    for (std::size_t t = 0; t < answers.size(); ++t) {
+      judge(file, answers.at(t));
+      must(answers.at(t).library == answers[0].library, "threads have several objects of one file");
+      must(titles.at(t) == titles[0], "threads read " + titles[0] + " and " + titles.at(t));
+    }
+    if (!answers[0].library) return;
+    must(titles[0] == "Number " + std::to_string(content(file)->version), "threads read " + titles[0]);
+    std::vector<std::jthread> threads;
+    for (const Answer& answer : answers)
+      threads.emplace_back([library = answer.library] { ilaw_library_close(library); });
   }
 
   static void judge_title(const OpenLibrary& one) {
@@ -293,6 +353,7 @@ class Machine {
   }
 
   fs::path folder_;
+  const std::string size_ = std::to_string(bytes_of(1).size());
   std::array<std::shared_ptr<Content>, 2> contents_;
   std::list<OpenLibrary> libraries_;
   std::vector<OpenLibrary*> handles_;  // once per opening
@@ -305,29 +366,11 @@ class Machine {
 // loaded.
 std::string fault_of(const std::vector<Command>& commands) {
   const TemporaryFolder folder;
-  std::array<int, 2> ends{};
-  must(pipe(ends.data()) == 0, "no pipe");
-  const pid_t child = fork();
-  if (child == 0) {
+  return fault_in_child([&] {
     setenv("ILAW_PATH", folder.path.c_str(), 1);
-    std::string fault;
-    try {
-      Machine machine(fs::canonical(folder.path));
-      for (const Command& command : commands) machine.run(command);
-    } catch (const std::exception& error) {
-      fault = error.what();
-    }
-    _exit(write(ends[1], fault.data(), fault.size()) == static_cast<ssize_t>(fault.size()) ? 0 : 1);
-  }
-  close(ends[1]);
-  std::string fault(1024, '\0');
-  const ssize_t got = read(ends[0], fault.data(), fault.size());
-  close(ends[0]);
-  int status = 0;
-  must(waitpid(child, &status, 0) == child, "no child");
-  fault.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
-  if (WIFSIGNALED(status)) return "signal " + std::to_string(WTERMSIG(status));
-  return fault.empty() && status != 0 ? "exit status " + std::to_string(status) : fault;
+    Machine machine(fs::canonical(folder.path));
+    for (const Command& command : commands) machine.run(command);
+  });
 }
 
 // Without all commands that the fault does not need.

@@ -21,7 +21,7 @@ STATEMENTS = [("missing reset", r"[a-z][\w.\->\[\]]+(?:\.clear\(\)| = (?:0|0\.0|
 EXPRESSIONS = [r"^\s*return (.+);$", r"^\s*(?:const )?(?:double|bool|int|V|auto|std::size_t) \w+ = (.+);$",
                r"^\s*[\w.\->\[\]]+ [-+*]?= (.+);$", r"^\s*(?:\} else )?if \((.+)\) (?:\{|return.*|continue;|break;)$"]
 PYTHON = [r"^\s*return (.+)$", r"^\s*[\w.\[\]]+ [-+*]?= (.+)$", r"^\s*(?:el)?if (.+):$"]
-NO_EXPRESSION = re.compile(r'(?<![=!<>])=(?!=)|["\'{]|//|#|\[[&=]|\]\(|\bfor\b|\blambda\b|\byield\b|\w<\w.*>\(')
+NO_EXPRESSION = re.compile(r'(?<![=!<>])=(?!=)|["\'{]|//|#|\[[&=]|\]\(|\bfor\b|Union\[|\blambda\b|\byield\b|\w<\w.*>\(')
 
 
 def is_whole(text):

@@ -51,7 +51,8 @@ AREAS = {
     "kit": Area("api/include/ilaw/kit", ["kit_test", "laws_test"]),
     "loader": Area("api/loader", ["loader_test", "loader_memory_test", "unusual_hosts_test"]),
     "search": Area("api/search", ["facets_test", "mesh_test"]),
-    "coupled": Area("api/coupled", ["coupled_test", "coupled_made_test", "host_test", "closed_forms_test", "prestress_test"]),
+    "coupled": Area("api/coupled", ["coupled_test", "coupled_made_test", "host_test", "closed_forms_test", "prestress_test",
+                                    "ctest python.solver_machine"]),
     "check": Area("api/check", ["check_test"]),
     "host": Area("host_mock/host", ["host_test", "bars_test", "blocks_test", "bodies_test", "scene_keys_test",
                                     "closed_forms_test", "prestress_test", "mesh_test", "proximity_filter_test",
@@ -63,7 +64,7 @@ AREAS = {
     "cli": Area("host_mock/cli", ["program_test", "runs_test", "resume_test", "keys_test", "study_test", "bench_test"]),
     "bench": Area("host_mock/instruments/bench", ["bench_test"]),
     "python": Area("api/python/ilaw", [f"ctest python.{name}" for name in
-                                       ("interface", "coupled", "fields", "search", "shapes", "bindings")]
+                                       ("interface", "coupled", "fields", "search", "shapes", "bindings", "solver_machine")]
                    + ["ctest view.plot", "ctest view.page_data"]),
     "lammps": Area("api/lammps", ["ctest lammps"]), "yade": Area("api/yade", ["ctest yade"]),
     "mujoco": Area("api/mujoco", ["mujoco_test"]), "dealii": Area("api/dealii", ["ctest dealii"]),

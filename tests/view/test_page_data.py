@@ -134,6 +134,7 @@ def test_pressure_of_a_resting_mass_is_its_weight_over_its_area(tmp_path):
     assert view(results).returncode == 0
     page = Page(results / "view.html")
     assert page.field("pressure", "floor")[-1] == pytest.approx([2 * 10 / 0.5, 3 * 10 / 0.5])
+    assert "all interfaces" not in [field["interface"] for field in page.film["fields"]]  # there is one
     assert page.film["forces"]["most"] == pytest.approx(30)
 
 

@@ -52,7 +52,7 @@ def names_of(results):
 
 
 def test_quantities_units_and_names_of_the_scene_are_on_the_axes(tmp_path):
-    scene = sliding(units={"length": "mm", "mass": "t", "time": "s"}, sets={"block": [0]}, title="A < B & $C$")
+    scene = sliding(units={"length": "mm", "mass": "t", "time": "s"}, sets={"block": [0]}, title="'A < B' & $C$")
     scene["output"]["watch"] = ["block"]
     results = run(scene, tmp_path)
     done = plot(results)

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import ctypes
 import operator
+import os
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -27,6 +28,14 @@ def whole(name: str, value: Any, low: int, high: int) -> int:
     if not low <= number <= high:
         raise InvalidArgument(f"{name}: {number}, expected a whole number from {low} to {high}")
     return number
+
+
+def text(value: str | os.PathLike[str]) -> bytes:
+    """A name or path for C, which would end it at a NUL."""
+    encoded = os.fsencode(value)
+    if b"\0" in encoded:
+        raise InvalidArgument(f"{value!r}: has a NUL, expected a text without")
+    return encoded
 
 
 class NotCopied:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from . import _abi
 from ._loader import loader
-from ._objects import Handle
+from ._objects import Handle, text
 from .errors import NotFound, raise_for
 
 
@@ -95,7 +95,7 @@ class Library:
     def __init__(self, name_or_path: str | os.PathLike[str]) -> None:
         handle = ctypes.c_void_p()
         message = ctypes.create_string_buffer(1024)
-        code = loader().ilaw_library_open(os.fsencode(name_or_path), ctypes.byref(handle), message, len(message))
+        code = loader().ilaw_library_open(text(name_or_path), ctypes.byref(handle), message, len(message))
         raise_for(code, message.value.decode(errors="replace"))
         self.handle = Handle(handle, loader().ilaw_library_close)
 

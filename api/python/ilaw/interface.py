@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from . import _abi, arrays
 from ._loader import loader
-from ._objects import Handle, NotCopied, sized, whole
+from ._objects import Handle, NotCopied, sized, text, whole
 from .description import Amount, Law, Library, StateVariable, amounts, law_of, state_variables, texts
 from .errors import BadNodes, InvalidArgument, raise_for
 
@@ -55,9 +55,9 @@ class _Arguments:
 
     def _argument(self, name: str, value: Value) -> _abi.argument:
         made = sized(_abi.argument)
-        made.name = name.encode()
+        made.name = text(name)
         if isinstance(value, str):
-            made.kind, made.text = _abi.ValueKind.TEXT, value.encode()
+            made.kind, made.text = _abi.ValueKind.TEXT, text(value)
         elif value is PER_NODE:
             made.kind = _abi.ValueKind.PER_NODE
         elif isinstance(value, Mapping):
@@ -92,7 +92,7 @@ class _Arguments:
         pointers = (ctypes.POINTER(_abi.axis) * len(points))()
         for k, (axis, one) in enumerate(points.items()):
             read = sized(_abi.axis)
-            read.name, read.points, read.count = axis.encode(), one.ctypes.data, len(one)
+            read.name, read.points, read.count = text(axis), one.ctypes.data, len(one)
             pointers[k] = ctypes.pointer(read)
         self._kept.append(pointers)
         made.kind, made.values = _abi.ValueKind.TABLE, table.ctypes.data
@@ -171,7 +171,7 @@ class Interface:
         setup.arguments, setup.argument_count = arguments.pointers, arguments.count
         handle = ctypes.c_void_p()
         message = ctypes.create_string_buffer(1024)
-        law_id = law.encode() if law else None
+        law_id = text(law) if law else None
         code = loader().ilaw_interface_create(
             library.handle, law_id, ctypes.byref(setup), ctypes.byref(handle), message, len(message)
         )

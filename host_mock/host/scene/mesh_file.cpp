@@ -15,7 +15,6 @@
 #include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
-#include <vtkUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
@@ -29,7 +28,6 @@
 #include <sstream>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
 namespace ilaw::host {
@@ -51,34 +49,20 @@ struct ReaderError {
   }
 };
 
-template <class Reader>
-vtkSmartPointer<vtkUnstructuredGrid> read_by(const std::filesystem::path& file) {
-  vtkObject::GlobalWarningDisplayOff();
-  vtkNew<Reader> reader;
-  ReaderError error;
-  vtkNew<vtkCallbackCommand> observer;
-  observer->SetCallback(&ReaderError::note);
-  observer->SetClientData(&error);
-  reader->AddObserver(vtkCommand::ErrorEvent, observer);
-  if constexpr (std::is_same_v<Reader, vtkXMLUnstructuredGridReader>)
-    reader->SetReaderErrorObserver(observer), reader->SetParserErrorObserver(observer);
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  if (!error.first.empty() || reader->GetErrorCode() != 0)
-    throw MeshError("the file is damaged: " + (error.first.empty() ? "VTK cannot read it" : error.first) +
-                    "; expected a whole mesh");
-  return reader->GetOutput();
-}
-
 void check_file(const std::filesystem::path& file) {
   std::error_code ignored;
   const auto type = std::filesystem::status(file, ignored).type();
   if (type == std::filesystem::file_type::not_found) throw MeshError("no such file, expected a mesh");
   if (type != std::filesystem::file_type::regular) throw MeshError("found no file, expected a mesh");
+  const std::string extension = file.extension();
+  if (extension != ".vtu")
+    throw MeshError("found the extension '" + extension + "', expected .vtu; `meshio convert mesh" +
+                    (extension.empty() ? ".msh" : extension) +
+                    " mesh.vtu` writes one (Debian package python3-meshio)");
 }
 
 // VTK takes the beginning of a file for a mesh without cells.
-void check_end_of_xml(const std::filesystem::path& file) {
+void check_end(const std::filesystem::path& file) {
   constexpr std::string_view end = "</VTKFile>";
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
   const std::streamoff size = stream.tellg(), tail = std::min<std::streamoff>(size, 1024);
@@ -91,19 +75,21 @@ void check_end_of_xml(const std::filesystem::path& file) {
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::filesystem::path& file) {
-  check_file(file);
-  const std::string extension = file.extension();
-  if (extension == ".vtu") {
-    check_end_of_xml(file);
-    return read_by<vtkXMLUnstructuredGridReader>(file);
-  }
-  if (extension != ".vtk")
-    throw MeshError("found the extension '" + extension + "', expected .vtu or .vtk; `meshio convert mesh" +
-                    (extension.empty() ? ".msh" : extension) +
-                    " mesh.vtu` writes one (Debian package python3-meshio)");
-  vtkSmartPointer<vtkUnstructuredGrid> grid = read_by<vtkUnstructuredGridReader>(file);
-  if (!grid) throw MeshError("found another data set, expected an unstructured grid");
-  return grid;
+  vtkObject::GlobalWarningDisplayOff();
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  ReaderError error;
+  vtkNew<vtkCallbackCommand> observer;
+  observer->SetCallback(&ReaderError::note);
+  observer->SetClientData(&error);
+  reader->AddObserver(vtkCommand::ErrorEvent, observer);
+  reader->SetReaderErrorObserver(observer);
+  reader->SetParserErrorObserver(observer);
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  if (!error.first.empty() || reader->GetErrorCode() != 0)
+    throw MeshError("the file is damaged: " + (error.first.empty() ? "VTK cannot read it" : error.first) +
+                    "; expected a whole mesh");
+  return reader->GetOutput();
 }
 
 void read_nodes(vtkUnstructuredGrid& grid, MeshData& mesh) {
@@ -288,6 +274,8 @@ std::string bytes_of(const std::filesystem::path& file) {
 }  // namespace
 
 MeshData read_mesh_file(const std::filesystem::path& file) {
+  check_file(file);
+  check_end(file);
   constexpr unsigned max_seconds = 600;
   constexpr unsigned long long least_bytes = 1ULL << 32, bytes_per_byte = 64;
   std::error_code ignored;

@@ -171,7 +171,7 @@ void expect_solved(double exponent, bool loses) {
       opening += own.indentation == 0.0 ? 1 : 0;
     }
   }
-  EXPECT_LE(left, total / 20);
+  EXPECT_LE(left, total / 500);  // one of 4000
   EXPECT_GT(sliding, total / 5);
   EXPECT_GT(sticking, total / 50);
   EXPECT_GT(opening, total / 50);
