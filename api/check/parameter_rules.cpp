@@ -49,6 +49,8 @@ Values with_fields(const Trial& trial) {
   return values;
 }
 bool is_choice(const ilaw_parameter& p) { return p.kind == ILAW_KIND_CHOICE; }
+bool may_be_table(const ilaw_parameter& p) { return !is_choice(p) && p.axis_count > 0; }
+bool may_be_per_node(const ilaw_parameter& p) { return !is_choice(p) && has(p, ILAW_FLAG_ALLOWS_PER_NODE); }
 Value default_of(const ilaw_parameter& p) {
   return is_choice(p) ? text(p, p.choices[static_cast<std::size_t>(p.default_value)])
                       : number(p, p.default_value);
@@ -61,6 +63,20 @@ void for_parameters(const Subject& subject, Look look) {
   for (std::uint32_t k = 0; k < subject.law.parameter_count; ++k)
     judged = look(trial, *subject.law.parameters[k]) || judged;
   if (!judged) throw NotJudged{"the law has no such parameter"};
+}
+
+// What create must refuse for a parameter of a trial; nothing: the rule is not about this one.
+using WrongValues = std::vector<Value> (*)(const Trial& trial, const ilaw_parameter& p);
+template <WrongValues wrong>
+void refuses(const Subject& subject) {
+  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
+    const std::vector<Value> values = wrong(trial, p);
+    for (const Value& value : values) {
+      const bool may_need_fields = may_be_table(p) && value.kind == ILAW_KIND_VALUE_TABLE;
+      expect_refused(trial, with(may_need_fields ? with_fields(trial) : trial.values, value));
+    }
+    return !values.empty();
+  });
 }
 
 // As for_trials, with each parameter of a trial.
@@ -97,78 +113,52 @@ void missing(const Subject& subject) {
   });
 }
 
-void range(const Subject& subject) {
-  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (is_choice(p)) return false;
-    // A count needs the next whole number, which beyond 2^53 is more than 1 away.
-    const bool whole = p.kind == ILAW_KIND_INTEGER;
-    const double below = whole ? std::min(p.minimum - 1.0, std::nextafter(p.minimum, -infinity))
-                               : p.minimum - 1e-9 * std::max(1.0, std::abs(p.minimum));
-    expect_refused(trial, with(trial.values, number(p, below)));
-    if (has(p, ILAW_FLAG_EXCLUDES_MINIMUM)) expect_refused(trial, with(trial.values, number(p, p.minimum)));
-    const double next = std::nextafter(p.maximum, infinity);
-    const double above = whole ? std::max(p.maximum + 1.0, next) : next;
-    if (above < infinity) expect_refused(trial, with(trial.values, number(p, above)));
-    return true;
-  });
+std::vector<Value> beyond_range(const Trial&, const ilaw_parameter& p) {
+  if (is_choice(p)) return {};
+  // A count needs the next whole number, which beyond 2^53 is more than 1 away.
+  const bool whole = p.kind == ILAW_KIND_INTEGER;
+  const double below = whole ? std::min(p.minimum - 1.0, std::nextafter(p.minimum, -infinity))
+                             : p.minimum - 1e-9 * std::max(1.0, std::abs(p.minimum));
+  const double next = std::nextafter(p.maximum, infinity);
+  const double above = whole ? std::max(p.maximum + 1.0, next) : next;
+  std::vector<Value> wrong = {number(p, below)};
+  if (has(p, ILAW_FLAG_EXCLUDES_MINIMUM)) wrong.push_back(number(p, p.minimum));
+  if (above < infinity) wrong.push_back(number(p, above));
+  return wrong;
 }
 
-void no_number(const Subject& subject) {
-  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (is_choice(p)) return false;
-    expect_refused(trial, with(trial.values, number(p, std::nan(""))));
-    return true;
-  });
+std::vector<Value> no_number(const Trial&, const ilaw_parameter& p) {
+  if (is_choice(p)) return {};
+  return {number(p, std::nan(""))};
 }
 
-void infinite(const Subject& subject) {
-  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (is_choice(p)) return false;
-    expect_refused(trial, with(trial.values, number(p, -infinity)));
-    if (!has(p, ILAW_FLAG_ALLOWS_INFINITY)) expect_refused(trial, with(trial.values, number(p, infinity)));
-    return true;
-  });
+std::vector<Value> infinite(const Trial&, const ilaw_parameter& p) {
+  if (is_choice(p)) return {};
+  if (has(p, ILAW_FLAG_ALLOWS_INFINITY)) return {number(p, -infinity)};
+  return {number(p, -infinity), number(p, infinity)};
 }
 
-void whole_number(const Subject& subject) {
-  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (p.kind != ILAW_KIND_INTEGER) return false;
-    expect_refused(trial, with(trial.values, number(p, std::floor(p.minimum) + 0.5)));
-    expect_refused(trial, with(trial.values, number(p, std::floor(p.minimum) + 1.5)));
-    return true;
-  });
+std::vector<Value> no_whole_number(const Trial&, const ilaw_parameter& p) {
+  if (p.kind != ILAW_KIND_INTEGER) return {};
+  return {number(p, std::floor(p.minimum) + 0.5), number(p, std::floor(p.minimum) + 1.5)};
 }
 
-void choice(const Subject& subject) {
-  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (!is_choice(p)) return false;
-    for (const std::string& word :
-         {std::string(), std::string(p.choices[0]) + "_", std::string("none of them")})
-      expect_refused(trial, with(trial.values, text(p, word)));
-    return true;
-  });
+std::vector<Value> no_choice(const Trial&, const ilaw_parameter& p) {
+  if (!is_choice(p)) return {};
+  return {text(p, ""), text(p, std::string(p.choices[0]) + "_"), text(p, "none of them")};
 }
 
-void kind(const Subject& subject) {
-  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (is_choice(p))
-      expect_refused(trial, with(trial.values, number(p, 1e6)));
-    else
-      expect_refused(trial, with(trial.values, text(p, "many")));
-    Value unknown_kind = number(p, p.default_value);
-    unknown_kind.kind = 77;
-    expect_refused(trial, with(trial.values, unknown_kind));
-    return true;
-  });
+std::vector<Value> other_kind(const Trial&, const ilaw_parameter& p) {
+  Value unknown_kind = number(p, p.default_value);
+  unknown_kind.kind = 77;
+  return {is_choice(p) ? number(p, 1e6) : text(p, "many"), unknown_kind};
 }
 
-void varying(const Subject& subject) {
-  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    const bool is_table = p.axis_count > 0, per_node = has(p, ILAW_FLAG_ALLOWS_PER_NODE);
-    if (!is_table) expect_refused(trial, with(trial.values, table(p, {{"time", {0.0, 1.0}}}, 0.5)));
-    if (!per_node) expect_refused(trial, with(trial.values, {p.name, ILAW_KIND_VALUE_PER_NODE}));
-    return !is_table || !per_node;
-  });
+std::vector<Value> varying(const Trial&, const ilaw_parameter& p) {
+  std::vector<Value> wrong;
+  if (p.axis_count == 0) wrong.push_back(table(p, {{"time", {0.0, 1.0}}}, 0.5));
+  if (!has(p, ILAW_FLAG_ALLOWS_PER_NODE)) wrong.push_back({p.name, ILAW_KIND_VALUE_PER_NODE});
+  return wrong;
 }
 
 // Every value at an end of its range is accepted beside some others: which, a law may restrict.
@@ -258,9 +248,6 @@ bool expect_no_change(const Trial& trial, const Value& value, Draw& draw) {
   expect_same(varied, script, expected, run(varied, script), text_of(Values{value}));
   return true;
 }
-
-bool may_be_table(const ilaw_parameter& p) { return !is_choice(p) && p.axis_count > 0; }
-bool may_be_per_node(const ilaw_parameter& p) { return !is_choice(p) && has(p, ILAW_FLAG_ALLOWS_PER_NODE); }
 
 // Over each axis, and over as many as there may be.
 std::vector<std::vector<TableAxis>> axes_for(const ilaw_parameter& p) {
@@ -401,41 +388,29 @@ void node_constant(const Subject& subject) {
       "no parameter may be given per node");
 }
 
-void table_shape(const Subject& subject) {
-  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (!may_be_table(p)) return false;
-    const double value = value_in_table(trial, p), not_a_number = std::nan("");
-    const Values values = with_fields(trial);
-    const auto expect = [&](const std::vector<double>& points, const std::vector<double>& table) {
-      expect_refused(trial,
-                     with(values, {p.name, ILAW_KIND_VALUE_TABLE, 0.0, {}, {{p.axes[0], points}}, table}));
-    };
-    expect({}, {});
-    expect({0.0, 0.0}, {value, value});
-    expect({1.0, 0.0}, {value, value});
-    expect({not_a_number}, {value});
-    expect({0.0, infinity}, {value, value});
-    expect({0.0, 1.0}, {value, p.minimum - 1.0 - 1e-9 * std::abs(p.minimum)});
-    expect({0.0}, {not_a_number});
-    return true;
-  });
+std::vector<Value> table_shape(const Trial& trial, const ilaw_parameter& p) {
+  if (!may_be_table(p)) return {};
+  const double value = value_in_table(trial, p), not_a_number = std::nan("");
+  const auto over = [&](const std::vector<double>& points, const std::vector<double>& values) {
+    return Value{p.name, ILAW_KIND_VALUE_TABLE, 0.0, {}, {{p.axes[0], points}}, values};
+  };
+  return {over({}, {}),
+          over({0.0, 0.0}, {value, value}),
+          over({1.0, 0.0}, {value, value}),
+          over({not_a_number}, {value}),
+          over({0.0, infinity}, {value, value}),
+          over({0.0, 1.0}, {value, p.minimum - 1.0 - 1e-9 * std::abs(p.minimum)}),
+          over({0.0}, {not_a_number})};
 }
 
-void table_axes(const Subject& subject) {
-  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (!may_be_table(p)) return false;
-    const Values values = with_fields(trial);
-    const auto expect = [&](const std::vector<TableAxis>& axes) {
-      expect_refused(trial, with(values, table(p, axes, value_in_table(trial, p))));
-    };
-    const TableAxis own{p.axes[0], {0.0, 1.0}}, unknown{"nobody_has_this", {0.0, 1.0}};
-    expect({});
-    expect({unknown});
-    expect({own, unknown});
-    expect({own, own});
-    expect({own, own, own, own});
-    return true;
-  });
+std::vector<Value> table_axes(const Trial& trial, const ilaw_parameter& p) {
+  if (!may_be_table(p)) return {};
+  const TableAxis own{p.axes[0], {0.0, 1.0}}, unknown{"nobody_has_this", {0.0, 1.0}};
+  std::vector<Value> wrong;
+  for (const std::vector<TableAxis>& axes :
+       std::vector<std::vector<TableAxis>>{{}, {unknown}, {own, unknown}, {own, own}, {own, own, own, own}})
+    wrong.push_back(table(p, axes, value_in_table(trial, p)));
+  return wrong;
 }
 
 void table_field(const Subject& subject) {
@@ -461,20 +436,15 @@ TableAxis long_axis(const char* name, std::size_t count) {
 
 // Two axes whose product is too large, and three whose product is 2^64: 0 in 64 bits. Values for all of them
 // are not there, since nobody is to read them.
-void table_limit(const Subject& subject) {
-  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (!may_be_table(p) || p.axis_count < 2) return false;
-    const auto expect = [&](const std::vector<TableAxis>& axes) {
-      Value too_large = table(p, {{p.axes[0], {0.0}}}, value_in_table(trial, p));
-      too_large.axes = axes;
-      expect_refused(trial, with(with_fields(trial), too_large));
-    };
-    expect({long_axis(p.axes[0], 4097), long_axis(p.axes[1], 4096)});
-    if (p.axis_count > 2)
-      expect(
-          {long_axis(p.axes[0], 1U << 22), long_axis(p.axes[1], 1U << 21), long_axis(p.axes[2], 1U << 21)});
-    return true;
-  });
+std::vector<Value> table_limit(const Trial& trial, const ilaw_parameter& p) {
+  if (!may_be_table(p) || p.axis_count < 2) return {};
+  std::vector<Value> wrong(p.axis_count > 2 ? 2 : 1,
+                           table(p, {{p.axes[0], {0.0}}}, value_in_table(trial, p)));
+  wrong[0].axes = {long_axis(p.axes[0], 4097), long_axis(p.axes[1], 4096)};
+  if (wrong.size() > 1)
+    wrong[1].axes = {long_axis(p.axes[0], 1U << 22), long_axis(p.axes[1], 1U << 21),
+                     long_axis(p.axes[2], 1U << 21)};
+  return wrong;
 }
 
 void field_per_node(const Subject& subject) {
@@ -535,19 +505,19 @@ std::vector<Rule> parameter_rules() {
            "ilaw.h, ILAW_FLAG_REQUIRED", Needs::instance, missing},
           {"parameter-range",
            "A finite value below the minimum, at an excluded one, or above the maximum is refused.",
-           "ilaw.h, ilaw_parameter.minimum", Needs::instance, range},
+           "ilaw.h, ilaw_parameter.minimum", Needs::instance, refuses<beyond_range>},
           {"parameter-nan", "NaN is no value of a parameter.", "ilaw.h, ilaw_parameter.minimum",
-           Needs::instance, no_number},
+           Needs::instance, refuses<no_number>},
           {"parameter-infinity", "Infinity is refused where it is not allowed, -infinity always.",
-           "ilaw.h, ILAW_FLAG_ALLOWS_INFINITY", Needs::instance, infinite},
+           "ilaw.h, ILAW_FLAG_ALLOWS_INFINITY", Needs::instance, refuses<infinite>},
           {"parameter-whole", "A count is a whole number.", "ilaw.h, ILAW_KIND_INTEGER", Needs::instance,
-           whole_number},
+           refuses<no_whole_number>},
           {"parameter-choice", "A text that is none of the choices is refused.", "ilaw.h, ILAW_KIND_CHOICE",
-           Needs::instance, choice},
+           Needs::instance, refuses<no_choice>},
           {"parameter-kind", "A value of a kind that the parameter does not have is refused.",
-           "ilaw.h, ilaw_argument.kind", Needs::instance, kind},
+           "ilaw.h, ilaw_argument.kind", Needs::instance, refuses<other_kind>},
           {"parameter-varying", "Tables, and values per node, are refused where they are not allowed.",
-           "ilaw.h, ilaw_parameter.axes", Needs::instance, varying},
+           "ilaw.h, ilaw_parameter.axes", Needs::instance, refuses<varying>},
           {"parameter-accepted",
            "The ends of its range, infinity where allowed, and every choice of a parameter are "
            "accepted beside some others.",
@@ -559,13 +529,13 @@ std::vector<Rule> parameter_rules() {
            "ilaw.h, ILAW_FLAG_NEEDS_SPINS", Needs::instance, needs_spins},
           {"table-shape",
            "A table without points, with points that do not increase or a value out of range is refused.",
-           "ilaw.h, ilaw_axis.points", Needs::instance, table_shape},
+           "ilaw.h, ilaw_axis.points", Needs::instance, refuses<table_shape>},
           {"table-axes", "A table over no axis, an unknown one, one twice, or more than three is refused.",
-           "ilaw.h, ilaw_argument.axes", Needs::instance, table_axes},
+           "ilaw.h, ilaw_argument.axes", Needs::instance, refuses<table_axes>},
           {"table-field", "A table over a field that is not given is refused.", "ilaw.h, ilaw_argument.axes",
            Needs::instance, table_field},
           {"table-limit", "A table of more than ILAW_TABLE_MAX_VALUES values is refused.",
-           "ilaw.h, ILAW_TABLE_MAX_VALUES", Needs::instance, table_limit},
+           "ilaw.h, ILAW_TABLE_MAX_VALUES", Needs::instance, refuses<table_limit>},
           {"table-constant", "A table of one value gives the bits of that value.",
            "ilaw.h, ILAW_KIND_VALUE_TABLE", Needs::motion, table_constant},
           {"table-linear",

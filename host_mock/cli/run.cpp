@@ -47,18 +47,22 @@ constexpr const char* written_at_once =
     "(checkpoint\\.cbor|summary\\.json|(fields|obstacles)(_[0-9]{6,}\\.vtu|\\.vtu\\.series)|diverged\\.vtu)";
 
 // A run and what it writes. The constructor throws WriteError where nothing can be written, and
-// other std::runtime_error where there is nothing to resume from.
+// other std::runtime_error where there is nothing to resume from, or nothing gives a value that is expected:
+// the folder is left as it was.
 class Run {
  public:
   Run(Scene& scene, const RunOptions& options)
       : scene_(scene),
         options_(options),
         integrator_(*scene.model, scene.loads, scene.interfaces, scene.dt, scene.prestress),
-        fields_(scene, options.folder) {
+        fields_(scene, options.folder),
+        history_(scene, integrator_) {
     if (options.audits) audit_.emplace(scene, integrator_);
     if (options.tolerance) integrator_.set_tolerance(*options.tolerance);
+    if (!expected().empty()) check_expectations(expected(), summary(), history_.columns());
+    // The folder of a run to resume is there already.
+    if (!options.resume || std::filesystem::is_directory(options.folder)) held_.emplace(options.folder);
     options.resume ? resume() : begin();
-    if (!expected().empty()) check_expectations(expected(), summary(), history_->columns());
   }
 
   // Steps to the end, to a request to stop, or to a failure; the record says which.
@@ -71,7 +75,7 @@ class Run {
       while (integrator_.steps() < scene_.steps && !stop_requested()) {
         audited([this] { integrator_.step(); });
         tell_of_stable_step();
-        history_->add_step(integrator_);
+        history_.add_step(integrator_);
         if (events_) events_->add_step(integrator_);
         write_outputs();
         progress.add(1.0);
@@ -80,7 +84,7 @@ class Run {
       check_results();
       // Also at the end, to go on to a later one.
       if (options_.checkpoint_every > 0 && checkpoint_step_ != integrator_.steps()) write_checkpoint_now();
-      history_->commit();
+      history_.commit();
       if (events_) events_->commit();
     } catch (const Interrupted&) {
       record.interrupted = true;
@@ -117,13 +121,13 @@ class Run {
   nlohmann::json expected() const { return scene_.source.value("expect", nlohmann::json::array()); }
 
   nlohmann::json summary() {
-    record.forces = history_->forces().summary();
+    record.forces = history_.forces().summary();
     return summary_of(scene_, integrator_, record);
   }
 
   void begin() {
     clear();
-    history_ = std::make_unique<History>(scene_, integrator_, options_.folder);
+    history_.open(options_.folder);
     if (scene_.output.events) events_.emplace(scene_, options_.folder);
   }
 
@@ -163,12 +167,11 @@ class Run {
       AtomicFile(file, checkpoint.history).commit();
       std::filesystem::rename(
           file, options_.folder / ("history.until_step_" + std::to_string(integrator_.steps()) + ".csv"));
-      history_ = std::make_unique<History>(scene_, integrator_, options_.folder);
-      return;
+      return history_.open(options_.folder);
     }
-    history_ = std::make_unique<History>(scene_, integrator_, options_.folder, checkpoint.history);
+    history_.open(options_.folder, checkpoint.history);
     std::istringstream state(checkpoint.history_state);
-    history_->load(state);
+    history_.load(state);
   }
 
   // Events written before the resume are kept.
@@ -190,7 +193,7 @@ class Run {
     if (const auto& found = integrator_.prestressed(); found && options_.tells_of_start)
       std::printf("prestress: static equilibrium after %lld steps, residual %.2g\n",
                   static_cast<long long>(found->steps), found->residual);
-    history_->add_start(integrator_);
+    history_.add_start(integrator_);
     if (events_) events_->add_step(integrator_);
     if (scene_.output.fields > 0) fields_.write(integrator_);
   }
@@ -233,7 +236,7 @@ class Run {
   }
 
   void keep_rows() {
-    history_->keep_rows();
+    history_.keep_rows();
     if (events_) events_->keep_rows();
   }
 
@@ -264,7 +267,7 @@ class Run {
     if (!row && !field && !checkpoint) return;
     const double start = clock_seconds(CLOCK_MONOTONIC);
     if (row || field) check_motion();
-    if (row) history_->add_row(integrator_);
+    if (row) history_.add_row(integrator_);
     if (field) fields_.write(integrator_);
     if (checkpoint) write_checkpoint_now();
     record.seconds_output += seconds_since(start);
@@ -287,22 +290,23 @@ class Run {
 
   void write_checkpoint_now() {
     std::ostringstream history, events;
-    history_->save(history);
+    history_.save(history);
     if (events_) events_->save(events);
     write_checkpoint(scene_, integrator_,
-                     {history_->flush(), fields_.written(), history.str(),
+                     {history_.flush(), fields_.written(), history.str(),
                       events_ ? events_->flush() : FileMark{}, events.str()},
                      options_.folder);
     checkpoint_step_ = integrator_.steps();
   }
 
+  std::optional<HeldFolder> held_;
   Scene& scene_;
   const RunOptions& options_;
   Integrator integrator_;
   std::optional<Audit> audit_;
   Fields fields_;
   std::int64_t checkpoint_step_ = -1;  // of the newest one
-  std::unique_ptr<History> history_;
+  History history_;
   std::optional<Events> events_;
 };
 
@@ -334,9 +338,6 @@ int run(const RunOptions& options) {
 int run_scene(Scene& scene, const RunOptions& options) {
   const double start = clock_seconds(CLOCK_MONOTONIC);
   catch_interrupts();
-  // The folder of a run to resume is there already.
-  std::optional<HeldFolder> held;
-  if (!options.resume || std::filesystem::is_directory(options.folder)) held.emplace(options.folder);
   const std::unique_ptr<Run> run = start_or_explain(scene, options);
   if (!run) return exit_bad_input;
   const auto warn = [&](const std::vector<std::string>& warnings) {

@@ -63,6 +63,23 @@ class Expect(unittest.TestCase):
                 for word in words:
                     self.assertIn(word, done.stderr)
 
+    def test_leaves_earlier_results_when_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            for name, scene in (("good", BLOCK), ("bad", expecting("n1.u0"))):
+                (folder / f"{name}.json").write_text(json.dumps(scene))
+            command = [os.environ["ILAW_PROGRAM"], "run", "--out", folder / "out"]
+            subprocess.run([*command, folder / "good.json"], check=True, capture_output=True)
+            before = {file.name: file.read_bytes() for file in (folder / "out").iterdir()}
+            self.assertIn("summary.json", before)
+            self.assertEqual(subprocess.run([*command, folder / "bad.json"], capture_output=True).returncode, 2)
+            self.assertEqual({file.name: file.read_bytes() for file in (folder / "out").iterdir()}, before)
+
+    def test_names_what_the_summary_has_of_interfaces(self):
+        done, summary = run(expecting("floor.first_contact", 0.0))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(summary["expectations"][0]["within"])
+
     def test_is_not_asked_of_a_sweep(self):
         done, _ = run(expecting("n0.u0"), "--set", "/interfaces/0/parameters/friction=0.2,0.4")
         self.assertEqual(done.returncode, 0, done.stderr)

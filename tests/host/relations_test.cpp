@@ -22,7 +22,7 @@ class Relations : public ::testing::Test {
   // So that none is left out unseen.
   void expect_each(std::int64_t least) const {
     for (const Relation& relation : relations()) EXPECT_GE(held(relation.name), least) << relation.name;
-    for (const char* bits : {"with two threads", "beside itself", "resumed", "with plain steps",
+    for (const char* bits : {"with two threads", "beside itself", "resumed", "with contacts one by one",
                              "without skipping", "with parameters in reverse order"})
       EXPECT_GE(held(bits), least) << bits;
   }

@@ -214,6 +214,7 @@ class interface {
 
   const ilaw_law& law() const { return *ilaw_interface_law(handle_.get()); }
   const ilaw_instance* instance() const { return ilaw_interface_instance(handle_.get()); }
+  const ilaw_interface* get() const { return handle_.get(); }
 
   ilaw_instance_info info() const {
     ilaw_instance_info info{};

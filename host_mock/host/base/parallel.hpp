@@ -21,15 +21,14 @@ constexpr std::ptrdiff_t chunks_of(std::ptrdiff_t count, std::ptrdiff_t chunk) {
 template <class F>
 void for_each_chunk(std::ptrdiff_t count, std::ptrdiff_t chunk, F f) {
   const std::ptrdiff_t chunks = chunks_of(count, chunk);
-  const auto run = [&](std::ptrdiff_t c) { f(c, c * chunk, std::min(count, (c + 1) * chunk)); };
   if (chunks < 2 || omp_get_max_threads() == 1) {
-    for (std::ptrdiff_t c = 0; c < chunks; ++c) run(c);
+    for (std::ptrdiff_t c = 0; c < chunks; ++c) f(c, c * chunk, std::min(count, (c + 1) * chunk));
     return;
   }
   std::exception_ptr failure;
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t c = 0; c < chunks; ++c) try {
-      run(c);
+      f(c, c * chunk, std::min(count, (c + 1) * chunk));
     } catch (...) {
 #pragma omp critical(ilaw_failure)
       if (!failure) failure = std::current_exception();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact/block_step.hpp"
 
+#include "contact/contact_columns.hpp"
 #include "contact/contact_geometry.hpp"
 #include "contact/law_faults.hpp"
 
@@ -8,10 +9,8 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace ilaw::host {
 namespace {
@@ -35,8 +34,12 @@ struct Block {
 
 // The contacts that make the next block: those that follow each other, where they are enough to be
 // worth a call of the law; what does not is copied to and fro.
-Block next_block(NearContacts contacts) {
+Block next_block(NearContacts contacts, bool one_by_one) {
   constexpr std::ptrdiff_t enough = 24;
+  if (one_by_one) {
+    contacts.count = 1;
+    return {contacts, false};
+  }
   contacts.count = std::min(block_size, contacts.count);
   if (follow_each_other(contacts.index, contacts.count)) return {contacts, true};
   std::ptrdiff_t row = 1;
@@ -52,16 +55,16 @@ enum class Meets { obstacle, turning_obstacle, partners };
 template <int D, Meets What>
 class BlockWalk {
  public:
-  explicit BlockWalk(const BlockStep& step)
+  BlockWalk(const BlockStep& step, ContactColumns& columns)
       : step_(step),
         at_(step.contacts),
+        columns_(columns),
         obstacle_(components(step.obstacle.velocity())),
         obstacle_before_(components(step.obstacle.velocity_before())),
         moves_(obstacle_ != Components{}),
         moved_(obstacle_before_ != Components{}),
         stands_still_(!Turns && !moves_ && !moved_) {
-    // A law without this output leaves the contacts free.
-    if (!(step.law.outputs() & ILAW_OUTPUT_STATUS)) status_room_.fill(ILAW_FREE);
+    columns.use(step.law, D, {step.gets_energies, step.gets_energies}, block_size);
   }
 
   void solve(const Block& block, ChunkOutcome& outcome) {
@@ -69,18 +72,20 @@ class BlockWalk {
     node_ = block.contacts.nodes;
     count_ = block.contacts.count;
     contacts_in_row_ = block.in_row;
-    nodes_in_row_ = follow_each_other(node_, count_);
+    nodes_in_row_ = !step_.one_by_one && follow_each_other(node_, count_);
     locate();
     if (step_.heat) give_temperatures();
+    columns_.take(at_, contacts_, count_, {contacts_in_row_, contacts_in_row_ && !Turns});
+    if constexpr (Turns) turn_states();
     const ilaw_batch batch = make_batch();
-    if (!evaluate(batch, outcome)) return;
+    if (!accept(step_.law.evaluate(batch), outcome)) return;
     mark_touched(batch, count_statuses(outcome.sums));
     apply(outcome.sums);
     add_dissipation(outcome.sums);
-    if (step_.heat) take_heat();
+    if (step_.heat) columns_.give_heat(*step_.heat);
     if (show_fault(outcome.sums)) find_fault(outcome.refusal);
-    if (!contacts_in_row_) scatter();
-    if (!states_in_place()) scatter_states();
+    columns_.scatter_results();
+    columns_.scatter_states();
   }
 
  private:
@@ -177,117 +182,52 @@ class BlockWalk {
   }
   // Component by component, as laws work on them.
   static ilaw_input in_columns(const Vectors& vectors) { return ilaw::input(vectors.data(), 1, block_size); }
-  bool meets_plane() const { return What == Meets::obstacle && step_.obstacle.flat(); }
+  bool meets_plane() const { return What == Meets::obstacle && !step_.one_by_one && step_.obstacle.flat(); }
 
-  // An array of all contacts from the block's first on, or what was gathered of it; null where it
-  // is empty.
-  double* column(std::vector<double>& all, double* room) const {
-    if (all.empty()) return nullptr;
-    if (contacts_in_row_) return &all[contact(0)];
-    for (std::ptrdiff_t i = 0; i < count_; ++i) room[i] = all[contact(i)];
-    return room;
-  }
-  // The same of the states. On a surface that turns, a copy of them turns: a law that refuses leaves none.
-  bool states_in_place() const { return contacts_in_row_ && !Turns; }
-  double* states() {
-    if (states_in_place()) return at_.state.first(contact(0));
-    const std::size_t size = step_.law.info().state_size;
-    if (!state_room_) state_room_ = std::make_unique_for_overwrite<double[]>(size * block_size);
-    for (std::size_t c = 0; c < size; ++c)
-      for (std::ptrdiff_t i = 0; i < count_; ++i) state_in_room(i, c) = at_.state.at(contact(i), c);
-    return state_room_.get();
-  }
-  void turn_states(double* state, std::int64_t stride) const {
-    const auto column = static_cast<std::size_t>(stride);
+  // A copy of the states turns: a law that refuses leaves none.
+  void turn_states() const {
     for (std::ptrdiff_t i = 0; i < count_; ++i)
       turn_axes(step_.setup, step_.axes, D, step_.step,
-                [&](std::size_t number) -> double& { return state[number * column + i]; });
-  }
-  double& state_in_room(std::ptrdiff_t i, std::size_t c) {
-    return state_room_[c * block_size + static_cast<std::size_t>(i)];
+                [&](std::size_t number) -> double& { return columns_.state(i, number); });
   }
 
   ilaw_batch make_batch() {
     const ilaw_instance_info& info = step_.law.info();
-    double* const state = states();
-    const std::int64_t state_stride = states_in_place() ? at_.state.stride() : block_size;
-    if constexpr (Turns) turn_states(state, state_stride);
-    delassus_ = column(at_.delassus, delassus_room_.data());
-    impulse_ = contacts_in_row_ ? &at_.impulse[contact(0) * D] : impulse_room_.data();
-    status_ = contacts_in_row_ ? &at_.status[contact(0)] : status_room_.data();
     ilaw_batch batch =
         empty_batch(step_.obstacle.tangent(), step_.step.time, step_.step.velocity_step(), step_.step.dt);
-    batch.node_count = count_;
+    columns_.fill(batch);
     batch.v_free = relative(step_.v, obstacle_, moves_, turn_after_, v_free_);
     if ((info.inputs | (step_.gets_energies ? info.balance_inputs : 0U)) & ILAW_INPUT_V_PREVIOUS)
       batch.v_previous = relative(step_.step.v_before, obstacle_before_, moved_, turn_before_, v_previous_);
-    batch.delassus = ilaw::input(delassus_, 1, 0);
+    batch.delassus = ilaw::input(columns_.delassus(), 1, 0);
     batch.gap = ilaw::input(gap_.data(), 1, 0);
     batch.normal = meets_plane() ? in_columns(normal_) : ilaw::input(normal_.data(), D, 1);
-    batch.area = ilaw::input(column(at_.area, area_room_.data()), 1, 0);
-    batch.state_in = ilaw::input(state, 1, state_stride);
-    batch.state_out = ilaw::output(state, 1, state_stride);
-    batch.impulse = ilaw::output(impulse_, D, 1);
-    if (step_.gets_energies) batch.energy = ilaw::output(energy_.data(), 1, block_size);
-    batch.status = status_;
-    batch.status_stride = 1;
-    add_parameters(batch);
-    add_amounts(batch);
     return batch;
   }
 
-  void add_parameters(ilaw_batch& batch) {
-    const std::size_t count = at_.parameters.size();
-    if (count == 0) return;
-    if (!contacts_in_row_) parameter_room_.resize(count * block_size);
-    parameters_.resize(count);
-    for (std::size_t p = 0; p < count; ++p) {
-      double* room = contacts_in_row_ ? nullptr : parameter_room_.data() + p * block_size;
-      parameters_[p] = ilaw::input(column(at_.parameters[p], room), 1, 0);
-    }
-    batch.per_node_parameters = parameters_.data();
-  }
-
-  void add_amounts(ilaw_batch& batch) {
-    const std::size_t count = step_.gets_energies ? step_.law.info().amount_count : 0;
-    if (count == 0) return;
-    amount_room_.resize(count * block_size);
-    amounts_.resize(count);
-    for (std::size_t k = 0; k < count; ++k)
-      amounts_[k] = ilaw::output(amount_room_.data() + k * block_size, 1, 0);
-    batch.amounts = amounts_.data();
-  }
   void give_temperatures() {
     static const ContactPoint alone;
     for (std::ptrdiff_t i = 0; i < count_; ++i)
       step_.heat->give(contact(i), node_[i], Partnered ? at_.point[contact(i)] : alone, at_);
   }
-  void take_heat() const {
-    for (std::ptrdiff_t i = 0; i < count_; ++i)
-      step_.heat->take(contact(i), [&](std::size_t k) { return amounts_[k].values[i]; });
-  }
-  void sum_amounts(ContactSums& sums) const {
-    for (std::size_t k = 0; k < amounts_.size(); ++k)
-      for (std::ptrdiff_t i = 0; i < count_; ++i) sums.add_amount(k, amounts_[k].values[i]);
-  }
 
   // ---- the law, and what follows from it ----
 
-  bool evaluate(const ilaw_batch& batch, ChunkOutcome& outcome) {
-    const Answer answer = step_.law.evaluate(batch);
+  bool accept(const Answer& answer, ChunkOutcome& outcome) const {
     outcome.refusal.add(answer, static_cast<std::size_t>(count_), contacts_);
     outcome.sums.add_stable_step(answer.report.stable_velocity_step);
-    outcome.refusal.add_unknown(status_, contacts_, answer.code == ILAW_OK ? count_ : 0);
+    outcome.refusal.add_unknown(columns_.status(), contacts_, answer.code == ILAW_OK ? count_ : 0);
     return outcome.refusal.code == ILAW_OK;
   }
 
   // Returns how many contacts are free. Most often all have the first one's status, and one round will do.
   std::ptrdiff_t count_statuses(ContactSums& sums) const {
+    const std::uint8_t* const status = columns_.status();
     std::ptrdiff_t free = 0, others = count_;
     for (int round = 0; others > 0 && round < ILAW_STATUS_COUNT; ++round) {
-      const auto k = static_cast<std::uint8_t>((status_[0] + round) % ILAW_STATUS_COUNT);
+      const auto k = static_cast<std::uint8_t>((status[0] + round) % ILAW_STATUS_COUNT);
       std::uint8_t found = 0;
-      for (std::ptrdiff_t i = 0; i < count_; ++i) found += status_[i] == k ? 1 : 0;
+      for (std::ptrdiff_t i = 0; i < count_; ++i) found += status[i] == k ? 1 : 0;
       sums.statuses[k] += found;
       others -= found;
       if (k == ILAW_FREE) free = found;
@@ -298,8 +238,9 @@ class BlockWalk {
   void mark_touched(const ilaw_batch& batch, std::ptrdiff_t free) {
     if (at_.state.empty()) return;
     if (free == 0 && contacts_in_row_) return at_.mark_acting(contact(0), count_);
+    const std::uint8_t* const status = columns_.status();
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
-      if (status_[i] != ILAW_FREE) {
+      if (status[i] != ILAW_FREE) {
         at_.mark_acting(contact(i), 1);
         continue;
       }
@@ -321,7 +262,7 @@ class BlockWalk {
   void apply(ContactSums& sums) {
     double* const v = step_.v.data();
     const double* const before = step_.step.v_before.data();
-    const double* const energies = step_.gets_energies ? &energy_[ILAW_ENERGY_STORED * block_size] : nullptr;
+    const double *const energies = columns_.energy(ILAW_ENERGY_STORED), *const impulse = columns_.impulse();
     double work = sums.work, relative_work = sums.relative_work, penetration = sums.penetration,
            stored = sums.energy[ILAW_ENERGY_STORED];
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
@@ -330,7 +271,7 @@ class BlockWalk {
       Components r;
       bool acts = false;
       for (int c = 0; c < D; ++c) {
-        r[c] = impulse_[D * i + c];
+        r[c] = impulse[D * i + c];
         acts = acts || r[c] != 0.0;
       }
       if (!acts) continue;
@@ -351,7 +292,7 @@ class BlockWalk {
         for (int c = 0; c < D; ++c) v[Eigen::Index{D} * node + c] += scale * r[c];
       });
     else {
-      const double inverse_mass = delassus_[i];
+      const double inverse_mass = columns_.delassus()[i];
       for (int c = 0; c < D; ++c) v[first_dof(i) + c] += inverse_mass * r[c];
     }
   }
@@ -373,81 +314,57 @@ class BlockWalk {
   }
 
   void add_dissipation(ContactSums& sums) const {
-    sum_amounts(sums);
+    columns_.sum_amounts(sums);
     for (std::size_t k = 0; step_.gets_energies && k < ILAW_ENERGY_STORED; ++k)
-      sums.add_dissipation(k, &energy_[k * block_size], count_);
+      sums.add_dissipation(k, columns_.energy(k), count_);
   }
 
   void find_fault(Refusal& refusal) const {
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
-      std::array<double, ILAW_ENERGY_COUNT> energy{};
-      for (std::size_t k = 0; step_.gets_energies && k < energy.size(); ++k)
-        energy[k] = energy_[k * block_size + static_cast<std::size_t>(i)];
-      if (const char* fault = fault_of(impulse_ + D * i, D, energy.data(), status_[i]))
+      const std::array energies = columns_.energies(i);
+      if (const char* fault = fault_of(columns_.impulse() + D * i, D, energies.data(), columns_.status()[i]))
         return refusal.add({ILAW_BAD_LIBRARY, 0, contacts_[i], 0, fault});
     }
   }
 
-  void scatter() {
-    for (std::ptrdiff_t i = 0; i < count_; ++i) {
-      std::copy_n(impulse_ + D * i, D, &at_.impulse[contact(i) * D]);
-      at_.status[contact(i)] = status_[i];
-    }
-  }
-  void scatter_states() {
-    for (std::size_t c = 0; c < step_.law.info().state_size; ++c)
-      for (std::ptrdiff_t i = 0; i < count_; ++i) at_.state.at(contact(i), c) = state_in_room(i, c);
-  }
-
   const BlockStep& step_;
   ContactArrays& at_;
+  ContactColumns& columns_;
   const Components obstacle_, obstacle_before_;
   const bool moves_, moved_, stands_still_;  // the obstacle, in the coming step and before
   const std::int32_t *contacts_ = nullptr, *node_ = nullptr;
   std::ptrdiff_t count_ = 0;
   bool contacts_in_row_ = false, nodes_in_row_ = false;
   std::ptrdiff_t normals_ = 0;  // nodes whose normal is already that of the plane
-  // The arrays of this block: in the host's arrays or the rooms below.
-  double *delassus_ = nullptr, *impulse_ = nullptr;
-  std::uint8_t* status_ = nullptr;
-  Column gap_, delassus_room_, area_room_;
-  Vectors v_free_, v_previous_, normal_, impulse_room_;
-  TurnVectors turn_before_, turn_after_;                       // velocities of the surface
-  std::array<double, ILAW_ENERGY_COUNT * block_size> energy_;  // part by part
-  std::array<std::uint8_t, block_size> status_room_;
-  std::unique_ptr<double[]> state_room_;
-  std::vector<double> parameter_room_;
-  std::vector<ilaw_input> parameters_;
-  std::vector<double> amount_room_;
-  std::vector<ilaw_output> amounts_;
+  Column gap_;
+  Vectors v_free_, v_previous_, normal_;
+  TurnVectors turn_before_, turn_after_;  // velocities of the surface
 };
 
 template <int D, Meets What>
-void solve_blocks(const BlockStep& step, NearContacts contacts, ChunkOutcome& outcome) {
-  BlockWalk<D, What> blocks(step);
+void step_blocks(const BlockStep& step, NearContacts contacts, ChunkOutcome& outcome) {
+  static thread_local ContactColumns columns;  // stays in the cache from chunk to chunk
+  BlockWalk<D, What> blocks(step, columns);
   while (contacts.count > 0) {
-    const Block block = next_block(contacts);
+    const Block block = next_block(contacts, step.one_by_one);
     blocks.solve(block, outcome);
     contacts.leave_out(block.contacts.count);
   }
 }
 
 template <int D>
-void solve_in(const BlockStep& step, const NearContacts& contacts, ChunkOutcome& outcome) {
-  if (!step.contacts.point.empty())
-    solve_blocks<D, Meets::partners>(step, contacts, outcome);
-  else if (step.setup.counterpart->turns())
-    solve_blocks<D, Meets::turning_obstacle>(step, contacts, outcome);
-  else
-    solve_blocks<D, Meets::obstacle>(step, contacts, outcome);
+ChunkStep chunk_step_in(const BlockStep& step) {
+  if (!step.contacts.point.empty()) return step_blocks<D, Meets::partners>;
+  return step.setup.counterpart->turns() ? step_blocks<D, Meets::turning_obstacle>
+                                         : step_blocks<D, Meets::obstacle>;
 }
 
 }  // namespace
 
-void solve_chunk(const BlockStep& step, const NearContacts& contacts, ChunkOutcome& outcome) {
+ChunkStep chunk_step_of(const BlockStep& step) {
   const int d = step.model.dimension();
-  if (d == 1) return solve_in<1>(step, contacts, outcome);
-  return d == 2 ? solve_in<2>(step, contacts, outcome) : solve_in<3>(step, contacts, outcome);
+  if (d == 1) return chunk_step_in<1>(step);
+  return d == 2 ? chunk_step_in<2>(step) : chunk_step_in<3>(step);
 }
 
 }  // namespace ilaw::host

@@ -1,7 +1,6 @@
-// block_step.hpp - plain_step.hpp, fused for the cache, with the same bits: the step of contacts of which no
-// two share a node, from gaps to new velocities, in blocks that stay in the cache. Where the contacts of a
-// block and their nodes follow each other, the law reads and writes the host's own arrays; else the block
-// gathers what the law asks for.
+// block_step.hpp - the step of contacts of which no two share a node, from gaps to new velocities, in blocks
+// that stay in the cache. Where the contacts of a block and their nodes follow each other, the law reads and
+// writes the host's own arrays; else the block gathers what the law asks for.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -27,6 +26,7 @@ struct BlockStep {
   Dofs& v;                               // v_free, then what the impulses make of it
   bool gets_energies;
   ContactHeat* heat;  // null: no temperatures
+  bool one_by_one;    // each contact is gathered alone: same bits, more work
 };
 
 // The result of the contacts of a chunk.
@@ -36,6 +36,8 @@ struct ChunkOutcome {
 };
 
 // Adds what becomes of the contacts to outcome.
-void solve_chunk(const BlockStep& step, const NearContacts& contacts, ChunkOutcome& outcome);
+using ChunkStep = void (*)(const BlockStep& step, NearContacts contacts, ChunkOutcome& outcome);
+// The one for the dimension and the counterpart of an interface.
+ChunkStep chunk_step_of(const BlockStep& step);
 
 }  // namespace ilaw::host

@@ -41,6 +41,12 @@ void ContactArrays::add(const Entry& entry) {
   marks_.push_back(static_cast<std::uint8_t>(entry.must_be_evaluated ? awake | changed : touched));
   if (partnered_) point.emplace_back();
   if (keeps_geometry_) make_room();
+  if (keeps_wear_) wear.push_back(0.0);
+}
+
+void ContactArrays::keep_wear() {
+  keeps_wear_ = true;
+  wear.resize(count());
 }
 
 void ContactArrays::keep_geometry() {

@@ -128,6 +128,8 @@ class ContactArrays {
 
   // Where contacts share nodes the arrays below "coupled" are there.
   void keep_geometry();
+  // What a law takes off in a step.
+  void keep_wear();
 
   // Once more contacts are there, what a step reads and writes of them.
   void keep_in_large_pages() const;
@@ -149,6 +151,7 @@ class ContactArrays {
   std::vector<double> area;                     // where the law reads it
   std::vector<std::vector<double>> parameters;  // that are given per node, as the law lists them
   std::vector<std::uint8_t> status;
+  std::vector<double> wear;  // depth of the last step, where it is kept
   // coupled
   std::vector<double> normal, gap;
 
@@ -162,7 +165,7 @@ class ContactArrays {
 
   int dimension_;
   std::size_t state_size_;
-  bool reads_area_, partnered_, keeps_geometry_ = false;
+  bool reads_area_, partnered_, keeps_geometry_ = false, keeps_wear_ = false;
   std::vector<int> contact_index_;  // by node_index
   std::vector<std::uint8_t> marks_;
 };

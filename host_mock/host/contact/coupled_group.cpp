@@ -9,13 +9,7 @@
 namespace ilaw::host {
 
 CoupledGroup::CoupledGroup(const Law& law, int dimension, ilaw_delassus_form form, bool has_partners)
-    : dimension_(dimension),
-      form_(form),
-      has_partners_(has_partners),
-      state_size_(law.info().state_size),
-      law_(law, dimension),
-      parameters_(law.info().per_node_parameter_count),
-      amounts_(law.info().amount_count) {}
+    : dimension_(dimension), form_(form), has_partners_(has_partners), law_(law), watched_(law, dimension) {}
 
 void CoupledGroup::open() {
   contacts_.clear();
@@ -23,14 +17,11 @@ void CoupledGroup::open() {
   partners_.clear();
   body_.clear();
   counterpart_.clear();
-  for (std::vector<double>* values :
-       {&own_weights_, &weights_, &surface_, &surface_before_, &gap_, &normal_, &area_, &state_})
+  for (std::vector<double>* values : {&own_weights_, &weights_, &surface_, &surface_before_, &gap_, &normal_})
     values->clear();
-  for (std::vector<double>& values : parameters_) values.clear();
 }
 
-void CoupledGroup::add(const CoupledContact& contact, const ContactArrays& arrays) {
-  const auto k = static_cast<std::size_t>(contact.contact);
+void CoupledGroup::add(const CoupledContact& contact) {
   const auto append = [](std::vector<double>& values, const auto& vector) {
     values.insert(values.end(), vector.data(), vector.data() + vector.size());
   };
@@ -43,9 +34,6 @@ void CoupledGroup::add(const CoupledContact& contact, const ContactArrays& array
   append(surface_before_, contact.surface_before);
   gap_.push_back(contact.point.gap);
   append(normal_, contact.point.normal);
-  if (!arrays.area.empty()) area_.push_back(arrays.area[k]);
-  for (std::size_t p = 0; p < parameters_.size(); ++p) parameters_[p].push_back(arrays.parameters[p][k]);
-  for (std::size_t number = 0; number < state_size_; ++number) state_.push_back(arrays.state.at(k, number));
 }
 
 // As many entries for each contact as the longest one has.
@@ -62,12 +50,6 @@ void CoupledGroup::lay_out_partners() {
     }
 }
 
-void CoupledGroup::read_parameters(const ContactArrays& arrays) {
-  for (std::size_t p = 0; p < parameters_.size(); ++p)
-    for (std::size_t i = 0; i < count(); ++i)
-      parameters_[p][i] = arrays.parameters[p][static_cast<std::size_t>(contacts_[i])];
-}
-
 void CoupledGroup::keep_forces(double velocity_step) {
   forget_forces();
   const auto d = static_cast<std::size_t>(dimension_);
@@ -76,7 +58,7 @@ void CoupledGroup::keep_forces(double velocity_step) {
   for (std::size_t i = 0; i < count(); ++i) {
     if (impulse(i).isZero(0.0)) continue;
     contacts.push_back(contacts_[i]);
-    for (std::size_t c = 0; c < d; ++c) forces.push_back(impulse_[d * i + c] / velocity_step);
+    for (std::size_t c = 0; c < d; ++c) forces.push_back(columns_.impulse()[d * i + c] / velocity_step);
   }
   keep(std::move(contacts), std::move(forces));
 }
@@ -100,45 +82,27 @@ void CoupledGroup::keep(ContactList contacts, std::vector<double> forces) {
   }
 }
 
-const ilaw_contacts& CoupledGroup::close(const Vector& tangent, const StepView& step) {
+const ilaw_contacts& CoupledGroup::close(ContactArrays& arrays, const Vector& tangent, const StepView& step) {
   const auto d = static_cast<std::size_t>(dimension_);
-  const auto size = static_cast<std::int64_t>(state_size_);
-  impulse_.assign(d * count(), 0.0);
+  const auto size = static_cast<std::ptrdiff_t>(count());
+  columns_.use(law_, dimension_, {(law_.outputs() & ILAW_OUTPUT_ENERGY) != 0, true}, size);
+  columns_.take(arrays, contacts_.data(), size, {false, false});
+  std::fill_n(columns_.status(), size, std::uint8_t{ILAW_FREE});
   for (std::size_t i = 0; i < count(); ++i)
-    for (std::size_t c = 0; c < d; ++c)
-      if (const std::size_t k = d * static_cast<std::size_t>(contacts_[i]) + c; k < start_.size())
-        impulse_[d * i + c] = step.velocity_step() * start_[k];
-  energy_.assign(ILAW_ENERGY_COUNT * count(), 0.0);
-  status_.assign(count(), ILAW_FREE);
-  next_state_.resize(state_.size());
+    for (std::size_t c = 0; c < d; ++c) {
+      const std::size_t k = d * static_cast<std::size_t>(contacts_[i]) + c;
+      columns_.impulse()[d * i + c] = k < start_.size() ? step.velocity_step() * start_[k] : 0.0;
+    }
   batch_ = empty_batch(tangent, step.time, step.velocity_step(), step.dt);
-  batch_.node_count = static_cast<std::int64_t>(count());
+  columns_.fill(batch_);
   batch_.gap = ilaw::input(gap_.data(), 1, 1);
   batch_.normal = ilaw::input(normal_.data(), dimension_, 1);
-  batch_.area = ilaw::input(area_.data(), 1, 1);
-  parameter_inputs_.clear();
-  for (const std::vector<double>& values : parameters_)
-    parameter_inputs_.push_back(ilaw::input(values.data(), 1, 1));
-  batch_.per_node_parameters = parameter_inputs_.data();
-  batch_.state_in = ilaw::input(state_.data(), size, 1);
-  batch_.state_out = ilaw::output(next_state_.data(), size, 1);
-  batch_.impulse = ilaw::output(impulse_.data(), dimension_, 1);
-  if (law_.law()->outputs & ILAW_OUTPUT_ENERGY)
-    batch_.energy = ilaw::output(energy_.data(), ILAW_ENERGY_COUNT, 1);
-  amount_outputs_.clear();
-  for (std::vector<double>& values : amounts_) {
-    values.assign(count(), 0.0);
-    amount_outputs_.push_back(ilaw::output(values.data(), 1, 0));
-  }
-  batch_.amounts = amount_outputs_.empty() ? nullptr : amount_outputs_.data();
-  batch_.status = status_.data();
-  batch_.status_stride = 1;
 
   given_ = {};
   given_.struct_size = sizeof given_;
   given_.delassus_form = form_;
-  given_.law = law_.law();
-  given_.instance = law_.instance();
+  given_.law = watched_.law();
+  given_.instance = watched_.instance();
   given_.batch = &batch_;
   lay_out_partners();
   given_.body = body_.data();

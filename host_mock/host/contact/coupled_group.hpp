@@ -1,9 +1,8 @@
-// coupled_group.hpp - the contacts of an interface that may act in a step, in the arrays that ilaw/coupled.h
-// takes: one after the other.
+// coupled_group.hpp - the contacts of an interface that may act in a step, as ilaw/coupled.h takes them.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "contact/contact_arrays.hpp"
+#include "contact/contact_columns.hpp"
 #include "contact/watched_law.hpp"
 
 #include <ilaw/coupled.h>
@@ -29,11 +28,9 @@ class CoupledGroup {
 
   // ---- before a solve ----
   void open();
-  void add(const CoupledContact& contact, const ContactArrays& arrays);
-  // A number of the state of the contact that was added last: a copy of the accepted one.
-  double& last_state(std::size_t number) { return state_[state_.size() - state_size_ + number]; }
-  // Reads the parameters per node again, which changed since.
-  void read_parameters(const ContactArrays& arrays);
+  void add(const CoupledContact& contact);
+  // Gathers the contacts that were added.
+  const ilaw_contacts& close(ContactArrays& arrays, const Vector& tangent, const StepView& step);
   // Calls visit with each entry of the bodies: a node, which visit may replace by its place among the bodies
   // of the solve.
   template <class Visit>
@@ -42,13 +39,15 @@ class CoupledGroup {
     for (std::int32_t& node : counterpart_)
       if (node >= 0) visit(node);
   }
-  const ilaw_contacts& close(const Vector& tangent, const StepView& step);
 
   // ---- after it, by place in the group ----
   std::size_t count() const { return contacts_.size(); }
   std::int32_t contact(std::size_t i) const { return contacts_[i]; }
+  // A copy of the accepted state, and after the solve the next one.
+  const ContactColumns& columns() const { return columns_; }
   auto impulse(std::size_t i) const {
-    return Eigen::Map<const Vector>(&impulse_[i * static_cast<std::size_t>(dimension_)], dimension_);
+    return Eigen::Map<const Vector>(columns_.impulse() + i * static_cast<std::size_t>(dimension_),
+                                    dimension_);
   }
   // Velocities of the obstacle's surface there.
   auto surface(std::size_t i) const {
@@ -57,11 +56,6 @@ class CoupledGroup {
   auto surface_before(std::size_t i) const {
     return Eigen::Map<const Vector>(&surface_before_[i * static_cast<std::size_t>(dimension_)], dimension_);
   }
-  std::uint8_t status(std::size_t i) const { return status_[i]; }
-  const double* energy(std::size_t i) const { return &energy_[i * ILAW_ENERGY_COUNT]; }
-  std::size_t amount_count() const { return amounts_.size(); }
-  double amount(std::size_t k, std::size_t i) const { return amounts_[k][i]; }
-  double state(std::size_t i, std::size_t number) const { return next_state_[state_size_ * i + number]; }
 
   // ---- between steps: the forces with which the iterations of the next step begin ----
   void keep_forces(double velocity_step);
@@ -77,20 +71,16 @@ class CoupledGroup {
   int dimension_;
   ilaw_delassus_form form_;
   bool has_partners_;
-  std::size_t state_size_;
-  WatchedLaw law_;
+  const Law& law_;
+  WatchedLaw watched_;
+  ContactColumns columns_;
   ContactList contacts_, kept_;
   std::vector<double> kept_forces_;         // d for each of kept_
   std::vector<double> start_;               // the same for each contact of the interface; zero if not kept
   std::vector<std::size_t> first_partner_;  // of each contact, and the end
   std::vector<Partner> partners_;           // contact after contact
   std::vector<std::int32_t> body_, counterpart_;
-  std::vector<double> own_weights_, weights_, surface_, surface_before_, gap_, normal_, area_, impulse_,
-      energy_, state_, next_state_;
-  std::vector<std::vector<double>> parameters_, amounts_;
-  std::vector<std::uint8_t> status_;
-  std::vector<ilaw_input> parameter_inputs_;
-  std::vector<ilaw_output> amount_outputs_;
+  std::vector<double> own_weights_, weights_, surface_, surface_before_, gap_, normal_;
   ilaw_batch batch_{};
   ilaw_contacts given_{};
 };

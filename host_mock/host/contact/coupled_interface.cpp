@@ -6,6 +6,7 @@
 #include "contact/law_faults.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -48,11 +49,16 @@ const ilaw_contacts& CoupledInterface::open(const StepView& step) {
     if (is_idle(contact)) continue;
     const Vector after = obstacle.velocity() + surface.after,
                  before = obstacle.velocity_before() + surface.before;
-    group_.add({contact, interface_.node_of(contact), point, after, before}, contacts);
-    turn_axes(setup, interface_.axes_, interface_.dimension_, step,
-              [&](std::size_t number) -> double& { return group_.last_state(number); });
+    group_.add({contact, interface_.node_of(contact), point, after, before});
+    if (interface_.heat_)
+      interface_.heat_->give(k, interface_.node_of(contact), interface_.point(contact), contacts);
   }
-  return group_.close(obstacle.tangent(), step);
+  const ilaw_contacts& given = group_.close(contacts, obstacle.tangent(), step);
+  for (std::size_t i = 0; i < group_.count(); ++i)
+    turn_axes(setup, interface_.axes_, interface_.dimension_, step, [&](std::size_t number) -> double& {
+      return columns().state(static_cast<std::ptrdiff_t>(i), number);
+    });
+  return given;
 }
 
 // Out of reach, and its state does not change there.
@@ -60,24 +66,6 @@ bool CoupledInterface::is_idle(std::int32_t contact) const {
   const auto k = static_cast<std::size_t>(contact);
   return !interface_.search_.axes_turn() && !interface_.contacts_.must_be_evaluated(k) &&
          interface_.gap(contact) > interface_.search_.closing();
-}
-
-void CoupledInterface::give_temperatures() {
-  if (!interface_.heat_) return;
-  for (std::size_t i = 0; i < group_.count(); ++i) {
-    const std::int32_t contact = group_.contact(i);
-    interface_.heat_->give(static_cast<std::size_t>(contact), interface_.node_of(contact),
-                           interface_.point(contact), interface_.contacts_);
-  }
-  group_.read_parameters(interface_.contacts_);
-}
-
-void CoupledInterface::take() {
-  ContactArrays& contacts = interface_.contacts_;
-  for (std::size_t i = 0; i < group_.count(); ++i) {
-    contacts.vector(contacts.impulse, group_.contact(i)) = group_.impulse(i);
-    contacts.status[static_cast<std::size_t>(group_.contact(i))] = group_.status(i);
-  }
 }
 
 void CoupledInterface::check(const ilaw_coupled_report& report, std::int64_t bad_contact, double dt) const {
@@ -134,12 +122,13 @@ Vector CoupledInterface::v_free_of(std::size_t place, const Dofs& v) const {
 void CoupledInterface::check_results(double dt) const {
   for (std::size_t i = 0; i < group_.count(); ++i) {
     const std::int32_t contact = group_.contact(i);
-    const std::uint8_t status = group_.status(i);
+    const std::uint8_t status = columns().status()[i];
+    const std::array energies = columns().energies(static_cast<std::ptrdiff_t>(i));
     Refusal refusal;
     refusal.add_unknown(&status, &contact, 1);
     interface_.check(refusal, dt);
     if (const char* fault =
-            fault_of(group_.impulse(i).data(), interface_.dimension_, group_.energy(i), status))
+            fault_of(group_.impulse(i).data(), interface_.dimension_, energies.data(), status))
       interface_.check({ILAW_BAD_LIBRARY, 0, contact, 0, fault}, dt);
   }
 }
@@ -157,6 +146,8 @@ void CoupledInterface::accept(const StepView& step, const Dofs& v) {
     const bool acts = place < group_.count() && group_.contact(place) == contact;
     if (acts) accept_contact(step, v, place++);
   }
+  columns().sum_amounts(sums);
+  if (interface_.heat_) columns().give_heat(*interface_.heat_);
   interface_.total_amounts();
 }
 
@@ -170,16 +161,15 @@ void CoupledInterface::accept_contact(const StepView& step, const Dofs& v, std::
   sums.work += 0.5 * r.dot(sum);
   const Vector drift = group_.surface(place) + group_.surface_before(place);
   sums.relative_work += 0.5 * r.dot(sum - drift);
-  sums.add_energy(group_.energy(place));
-  for (std::size_t a = 0; a < group_.amount_count(); ++a) sums.add_amount(a, group_.amount(a, place));
-  if (interface_.heat_) interface_.heat_->take(k, [&](std::size_t a) { return group_.amount(a, place); });
+  const auto i = static_cast<std::ptrdiff_t>(place);
+  sums.add_energy(columns().energies(i).data());
   const std::size_t state_size = interface_.info().state_size;
   if (state_size == 0) return;
   bool changed = false;
   for (std::size_t number = 0; number < state_size; ++number) {
     double& state = contacts.state.at(k, number);
-    changed = changed || state != group_.state(place, number);
-    state = group_.state(place, number);
+    changed = changed || state != columns().state(i, number);
+    state = columns().state(i, number);
   }
   const bool in_reach = is_in_reach(interface_.gap(contact), interface_.normal(contact).data(),
                                     v_free_of(place, v).data(), interface_.dimension_, step.dt);

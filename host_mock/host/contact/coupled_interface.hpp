@@ -23,10 +23,8 @@ class CoupledInterface {
   // Chooses the active contacts, finds their gaps, normals and partners, and gives the solver those that may
   // act: the others are out of reach of the speeds of the step.
   const ilaw_contacts& open(const StepView& step);
-  // Laws get the temperatures.
-  void give_temperatures();
   // Takes the impulses that were found.
-  void take();
+  void take() { columns().scatter_results(); }
   // Throws as Interface::solve(), given the first contact with bad input (place in the group; -1: none).
   void check(const ilaw_coupled_report& report, std::int64_t bad_contact, double dt) const;
   // Throws as Interface::solve(), what ended the whole solve.
@@ -42,6 +40,7 @@ class CoupledInterface {
   void accept(const StepView& step, const Dofs& v);
 
  private:
+  const ContactColumns& columns() const { return group_.columns(); }
   bool is_idle(std::int32_t contact) const;
   Vector v_free_of(std::size_t place, const Dofs& v) const;
   void accept_contact(const StepView& step, const Dofs& v, std::size_t place);

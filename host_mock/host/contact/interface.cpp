@@ -5,7 +5,6 @@
 #include "base/parallel.hpp"
 #include "base/words.hpp"
 #include "contact/contact_geometry.hpp"
-#include "contact/plain_step.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -125,9 +124,9 @@ void Interface::solve(const StepView& step, Dofs& v) {
     sums_ = {};
     return;
   }
-  const BlockStep blocks{setup_, model_, inverse_mass_,    law_,  contacts_, step, obstacle_,
-                         axes_,  v,      gives_energies(), heat()};
-  const auto step_chunk = steps_plainly_ ? plain_step : solve_chunk;
+  const BlockStep blocks{setup_, model_, inverse_mass_,    law_,   contacts_,  step, obstacle_,
+                         axes_,  v,      gives_energies(), heat(), one_by_one_};
+  const ChunkStep step_chunk = chunk_step_of(blocks);
   outcomes_.resize(static_cast<std::size_t>(search_.chunk_count()));
   for_each_chunk(search_.chunk_count(), 1, [&](std::ptrdiff_t c, auto, auto) {
     ChunkOutcome& outcome = outcomes_[static_cast<std::size_t>(c)];
@@ -180,6 +179,20 @@ const ContactPoint& Interface::point(int contact_index) const {
 
 Vector Interface::relative(int contact_index, const Dofs& v) const {
   return relative_velocity(point(contact_index), node_of(contact_index), dimension_, v);
+}
+
+// The node comes to where it is with the velocity before the step.
+Interface::Rubbing Interface::rubbing(int contact_index, const StepView& step) const {
+  const int node_index = node_index_of(contact_index);
+  const auto [point, surface] = locate_contact(setup_, node_index, step, obstacle_.rates());
+  const auto along_surface = [&normal = point.normal](const Vector& vector) {
+    return (vector - vector.dot(normal) * normal).norm();
+  };
+  const Vector v = relative(contact_index, step.v_before) - obstacle_.velocity_before() - surface.before;
+  const Vector r = impulse(contact_index);
+  const double area = point.area > 0.0 ? setup_.area_factor * point.area : setup_.areas[at(node_index)];
+  return {r.dot(point.normal) / (step.dt * area), along_surface(r) / (step.dt * area),
+          step.dt * along_surface(v)};
 }
 
 void Interface::add_impulse(int contact_index, Dofs& impulse) const {

@@ -1,8 +1,8 @@
 // interface.hpp - one interface of a scene: the contacts between some nodes and their counterpart,
 // and the law that acts there. It brings together the law (law.hpp), what is stored of contacts
 // (contact_arrays.hpp), what the nodes touch (counterpart.hpp, obstacle_motion.hpp), which of them are near
-// (contact_search.hpp), and the step of contacts that share no nodes (plain_step.hpp, block_step.hpp). Where
-// contacts share nodes, coupled_interface.hpp takes its step.
+// (contact_search.hpp), and the step of contacts that share no nodes (block_step.hpp). Where contacts share
+// nodes, coupled_interface.hpp takes its step.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -58,8 +58,8 @@ class Interface {
   const ContactHeat* heat() const { return heat_ ? &*heat_ : nullptr; }
 
   // ---- a step where no two contacts share a node ----
-  // Contact by contact (plain_step.hpp) instead of in blocks.
-  void step_plainly() { steps_plainly_ = true; }
+  // Contact by contact instead of in blocks, with the same bits.
+  void step_one_by_one() { one_by_one_ = true; }
   // Chooses the active contacts, finds gaps, normals and delassus, asks the law for impulse, state,
   // energies and status, and takes v from v_free to v_free + H r. Throws ilaw::error on bad nodes.
   void solve(const StepView& step, Dofs& v);
@@ -90,6 +90,14 @@ class Interface {
   // Relative velocity of a contact in a velocity field, without the obstacle's own.
   Vector relative(int contact_index, const Dofs& v) const;
   const ObstacleMotion& obstacle() const { return obstacle_; }
+  // Force per area along the normal and along the surface, and the length of slip in the step.
+  struct Rubbing {
+    double pressure = 0.0, shear = 0.0, slip = 0.0;
+  };
+  Rubbing rubbing(int contact_index, const StepView& step) const;
+  // Depth that the law took off, from when it is first to be kept.
+  void keep_wear() { contacts_.keep_wear(); }
+  double wear(int contact_index) const { return contacts_.wear[at(contact_index)]; }
   // Only where contacts share nodes.
   auto normal(int contact_index) const { return contacts_.vector(contacts_.normal, contact_index); }
   double gap(int contact_index) const { return contacts_.gap[at(contact_index)]; }
@@ -144,7 +152,7 @@ class Interface {
   std::vector<ChunkOutcome> outcomes_;  // room that is kept from step to step
   ContactSums sums_;
   std::vector<double> amounts_;
-  bool asks_energies_ = true, steps_plainly_ = false;
+  bool asks_energies_ = true, one_by_one_ = false;
   const double* inverse_mass_ = nullptr;
 };
 

@@ -59,15 +59,14 @@ std::vector<std::size_t> Law::axes() const {
 }
 
 // A call of a library's code; no exception and no mode of the processor that it leaves goes further.
-template <class Call>
-Answer Law::answer_of(const ilaw_batch& batch, Call call) const {
+Answer Law::answer_of(Call call, const ilaw_batch& batch) const {
   const RunningCall running(
       {id_, ilaw_library_path(library_.get()), interface_name_, batch.time, batch.position_step});
   Answer answer{ILAW_OK, {}};
   answer.report.struct_size = sizeof(ilaw_report);
   const ilaw::floating_control before = ilaw::floating_control::now();
   try {
-    answer.code = call(&answer.report);
+    answer.code = call(interface_.get(), &batch, &answer.report);
   } catch (const abi::__forced_unwind&) {
     throw;
   } catch (const std::exception& error) {
@@ -90,14 +89,6 @@ Answer Law::answer_of(const ilaw_batch& batch, Call call) const {
     return broken("it named node " + std::to_string(first) +
                   ", which is none of the batch, as the first bad one");
   return answer;
-}
-
-Answer Law::initialise(const ilaw_batch& batch) const {
-  return answer_of(batch, [&](ilaw_report* report) { return interface_.initialise(batch, report); });
-}
-
-Answer Law::evaluate(const ilaw_batch& batch) const {
-  return answer_of(batch, [&](ilaw_report* report) { return interface_.evaluate(batch, report); });
 }
 
 }  // namespace ilaw::host

@@ -30,12 +30,12 @@ class Law {
   // Where in the state axes begin: they turn with the normal from step to step, and with an obstacle.
   std::vector<std::size_t> axes() const;
 
-  Answer initialise(const ilaw_batch& batch) const;
-  Answer evaluate(const ilaw_batch& batch) const;
+  Answer initialise(const ilaw_batch& batch) const { return answer_of(ilaw_interface_initialise, batch); }
+  Answer evaluate(const ilaw_batch& batch) const { return answer_of(ilaw_interface_evaluate, batch); }
 
  private:
-  template <class Call>
-  Answer answer_of(const ilaw_batch& batch, Call call) const;
+  using Call = decltype(&ilaw_interface_evaluate);
+  Answer answer_of(Call call, const ilaw_batch& batch) const;
 
   ilaw::library library_;
   ilaw::interface interface_;

@@ -41,18 +41,15 @@ std::int32_t ILAW_CALL WatchedLaw::info_of(const ilaw_instance* instance, ilaw_i
   return ILAW_OK;
 }
 
+// Contacts with bad input are left to the solver, which goes on with the others.
 std::int32_t ILAW_CALL WatchedLaw::evaluate_of(const ilaw_instance* instance, const ilaw_batch* batch,
                                                ilaw_report* report) {
-  return reinterpret_cast<const WatchedLaw*>(instance)->evaluate(*batch, *report);
-}
-
-// Contacts with bad input are left to the solver, which goes on with the others.
-std::int32_t WatchedLaw::evaluate(const ilaw_batch& batch, ilaw_report& report) const {
-  const Answer answer = law_.evaluate(batch);
-  report = answer.report;
+  const auto& watched = *reinterpret_cast<const WatchedLaw*>(instance);
+  const Answer answer = watched.law_.evaluate(*batch);
+  *report = answer.report;
   if (answer.code != ILAW_OK) return answer.code;
-  report.reason = wild_impulse(batch);
-  return report.reason ? ILAW_BAD_LIBRARY : ILAW_OK;
+  report->reason = watched.wild_impulse(*batch);
+  return report->reason ? ILAW_BAD_LIBRARY : ILAW_OK;
 }
 
 }  // namespace ilaw::host

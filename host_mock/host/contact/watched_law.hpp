@@ -24,7 +24,6 @@ class WatchedLaw {
   static std::int32_t ILAW_CALL info_of(const ilaw_instance* instance, ilaw_instance_info* info);
   static std::int32_t ILAW_CALL evaluate_of(const ilaw_instance* instance, const ilaw_batch* batch,
                                             ilaw_report* report);
-  std::int32_t evaluate(const ilaw_batch& batch, ilaw_report& report) const;
   const char* wild_impulse(const ilaw_batch& batch) const;
 
   const Law& law_;

@@ -14,13 +14,15 @@ using nlohmann::json;
 
 namespace {
 
-// "inf" is how a summary writes infinity; a text of another kind is no quantity.
-bool is_quantity(const json& value) { return value.is_number() || value == "inf"; }
+// "inf" is how a summary writes infinity; a text of another kind is no quantity. A time that has not come
+// is null.
+bool is_quantity(const json& value) { return value.is_number() || value.is_null() || value == "inf"; }
 
 double number_named(const std::string& name, const json& summary, const std::filesystem::path& folder) {
   const std::map<std::string, json> numbers = numbers_of(summary);
   const auto found = numbers.find(name);
   if (found == numbers.end()) return value_of(history_quantity(name), folder).value_or(std::nan(""));
+  if (found->second.is_null()) return std::nan("");
   return found->second.is_number() ? found->second.get<double>() : HUGE_VAL;
 }
 

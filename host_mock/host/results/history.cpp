@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "results/history.hpp"
 
+#include "base/bytes.hpp"
+
 #include <algorithm>
 #include <string>
 
@@ -25,22 +27,22 @@ void for_each_state(const ilaw_instance_info& info, Visit visit) {
 }  // namespace
 
 bool same_columns(const nlohmann::json& one, const nlohmann::json& other) {
-  for (const char* key : {"watch", "forces", "balance"})
+  for (const char* key : {"watch", "forces", "balance", "contact"})
     if (one.value(key, nlohmann::json()) != other.value(key, nlohmann::json())) return false;
   return true;
 }
 
-History::History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
-                 const std::optional<FileMark>& written)
-    : scene_(scene),
-      file_(folder / "history.csv", written),
-      table_(file_.stream()),
-      forces_(scene, integrator) {
+History::History(const Scene& scene, Integrator& integrator) : scene_(scene), forces_(scene, integrator) {
   find_contacts();
   find_motions(integrator);
+}
+
+void History::open(const std::filesystem::path& folder, const std::optional<FileMark>& written) {
+  file_.emplace(folder / "history.csv", written);
+  table_.emplace(file_->stream());
   if (written) return;
-  for (const std::string& name : columns()) table_ << name;
-  table_.end_row();
+  for (const std::string& name : columns()) *table_ << name;
+  table_->end_row();
 }
 
 // The impulse of a driven node that is in no interface is the reaction of its holder.
@@ -65,6 +67,7 @@ void History::find_contacts() {
       if (found == interface->nodes().end()) continue;
       const int node_index = static_cast<int>(found - interface->nodes().begin());
       contacts.push_back({interface.get(), node_index, ""});
+      if (scene_.output.contact) interface->keep_wear();
     }
     if (!contacts.empty()) is_alone_.back() = false;
     const std::string name = "n" + std::to_string(node) + ".";
@@ -86,6 +89,9 @@ std::vector<std::string> History::columns() const {
       names.push_back(contact.prefix + "status");
       for_each_state(contact.interface->info(),
                      [&](const std::string& name, int) { names.push_back(contact.prefix + name); });
+      if (!scene_.output.contact) continue;
+      for (const char* quantity : {"pressure", "shear", "slip_length", "wear_depth"})
+        names.push_back(contact.prefix + quantity);
     }
   }
   forces_.add_names(names);
@@ -111,27 +117,77 @@ void History::add_node(std::size_t watched, const Integrator& integrator, const 
   const int d = scene_.model->dimension();
   const Eigen::Index node = static_cast<Eigen::Index>(scene_.output.watch[watched]) * d;
   const auto add = [&](const Dofs& quantity) {
-    for (int c = 0; c < d; ++c) table_ << quantity[node + c];
+    for (int c = 0; c < d; ++c) *table_ << quantity[node + c];
   };
   add(integrator.displacement());
   add(integrator.velocity());
   add(impulse);
   if (has_temperature(scene_.output.watch[watched]))
-    table_ << integrator.temperatures()->at(scene_.output.watch[watched]);
+    *table_ << integrator.temperatures()->at(scene_.output.watch[watched]);
   for (const Contact& contact : contacts_[watched]) {
     const Interface& interface = *contact.interface;
     interface.setup().counterpart->follow(integrator.displacement());
     const int contact_index = interface.contact_at(contact.node_index);
     const int status = interface.is_active(contact_index) ? interface.status(contact_index) : int{ILAW_FREE};
-    table_ << interface.gap_at(contact.node_index, integrator.displacement(), integrator.time()) << status;
+    *table_ << interface.gap_at(contact.node_index, integrator.displacement(), integrator.time()) << status;
     const std::vector<double> state = interface.state_at(contact.node_index, integrator.displacement());
     for_each_state(interface.info(),
-                   [&](const std::string&, int entry) { table_ << state[static_cast<std::size_t>(entry)]; });
+                   [&](const std::string&, int entry) { *table_ << state[static_cast<std::size_t>(entry)]; });
+    if (!scene_.output.contact) continue;
+    table_->add_if_finite(contact.last.pressure);  // a point may have no area
+    table_->add_if_finite(contact.last.shear);
+    *table_ << contact.slip << contact.wear;
   }
 }
 
+template <class Visit>
+void History::for_each_acting(Visit visit) {
+  if (!scene_.output.contact) return;
+  for (std::vector<Contact>& contacts : contacts_)
+    for (Contact& contact : contacts) {
+      const int index = contact.interface->contact_at(contact.node_index);
+      if (contact.interface->is_active(index) && contact.interface->status(index) != ILAW_FREE)
+        visit(contact, index);
+    }
+}
+
+void History::add_start(const Integrator& integrator) {
+  forces_.add_start(integrator);
+  for_each_acting([](Contact& contact, int index) { contact.wear += contact.interface->wear(index); });
+}
+
+void History::add_step(const Integrator& integrator) {
+  forces_.add_step(integrator);
+  for (std::vector<Contact>& contacts : contacts_)
+    for (Contact& contact : contacts) contact.last = {};
+  const StepView step{
+      integrator.displacement(), integrator.velocity_before(), integrator.time(), scene_.dt, 0.0, 0.0,
+      integrator.steps()};
+  for_each_acting([&](Contact& contact, int index) {
+    contact.last = contact.interface->rubbing(index, step);
+    contact.slip += contact.last.slip;
+    contact.wear += contact.interface->wear(index);
+  });
+}
+
+void History::save(std::ostream& out) const {
+  forces_.save(out);
+  for (const std::vector<Contact>& contacts : contacts_)
+    for (const Contact& contact : contacts)
+      for (const double value : {contact.last.pressure, contact.last.shear, contact.slip, contact.wear})
+        write_value(out, value);
+}
+
+void History::load(std::istream& in) {
+  forces_.load(in);
+  for (std::vector<Contact>& contacts : contacts_)
+    for (Contact& contact : contacts)
+      for (double* value : {&contact.last.pressure, &contact.last.shear, &contact.slip, &contact.wear})
+        read_value(in, *value);
+}
+
 void History::add_row(const Integrator& integrator) {
-  table_ << integrator.time();
+  *table_ << integrator.time();
   if (!contacts_.empty()) {
     const Dofs impulse = integrator.interface_impulse();
     Dofs held = Dofs::Zero(motions_.empty() ? 0 : impulse.size());
@@ -139,24 +195,24 @@ void History::add_row(const Integrator& integrator) {
     for (std::size_t w = 0; w < contacts_.size(); ++w)
       add_node(w, integrator, is_alone_[w] && !motions_.empty() ? held : impulse);
   }
-  forces_.write_row(table_, integrator.time());
+  forces_.write_row(*table_, integrator.time());
   if (scene_.output.balance) {
     const EnergyReport energy = integrator.energy();
     for (const double value :
          {energy.kinetic, energy.internal, energy.potential, energy.external_work, energy.damping_work,
           energy.interface_work, energy.by_law[ILAW_ENERGY_FRICTION], energy.by_law[ILAW_ENERGY_IMPACT],
           energy.by_law[ILAW_ENERGY_RUPTURE], energy.by_law[ILAW_ENERGY_STORED], energy.balance_error})
-      table_ << value;
-    for (const double component : integrator.angular_momentum()) table_ << component;
+      *table_ << value;
+    for (const double component : integrator.angular_momentum()) *table_ << component;
     if (integrator.temperatures()) {
       const HeatReport heat = integrator.temperatures()->report();
       for (const double value :
            {heat.stored, heat.obstacles, heat.friction, heat.supplied, heat.balance_error})
-        table_ << value;
+        *table_ << value;
     }
   }
-  table_.end_row();
-  file_.check();
+  table_->end_row();
+  file_->check();
 }
 
 }  // namespace ilaw::host

@@ -22,23 +22,23 @@ bool same_columns(const nlohmann::json& one, const nlohmann::json& other);
 // axes.
 class History {
  public:
-  // written: by an earlier run, which this one continues.
-  History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
-          const std::optional<FileMark>& written = {});
+  History(const Scene& scene, Integrator& integrator);
+  // Before the first row. written: by an earlier run, which this one continues.
+  void open(const std::filesystem::path& folder, const std::optional<FileMark>& written = {});
   // After the start, before any step.
-  void add_start(const Integrator& integrator) { forces_.add_start(integrator); }
+  void add_start(const Integrator& integrator);
   // After every step, before its row.
-  void add_step(const Integrator& integrator) { forces_.add_step(integrator); }
+  void add_step(const Integrator& integrator);
   void add_row(const Integrator& integrator);
-  FileMark flush() { return file_.flush(); }
-  void commit() { file_.commit(); }
-  void keep_rows() { file_.keep_lines(); }
+  FileMark flush() { return file_->flush(); }
+  void commit() { file_->commit(); }
+  void keep_rows() { file_->keep_lines(); }
 
   std::vector<std::string> columns() const;
   const Forces& forces() const { return forces_; }
   // The state beside the integrator on which the next row depends.
-  void save(std::ostream& out) const { forces_.save(out); }
-  void load(std::istream& in) { forces_.load(in); }
+  void save(std::ostream& out) const;
+  void load(std::istream& in);
 
  private:
   // A watched node in one interface.
@@ -46,15 +46,20 @@ class History {
     const Interface* interface;
     int node_index;
     std::string prefix;  // "n0." or, where the node has several, "n0.<interface>."
+    Interface::Rubbing last{};
+    double slip = 0.0, wear = 0.0;  // since the start
   };
+  // visit(contact, contact_index), of those whose status is not free, where they are to be told.
+  template <class Visit>
+  void for_each_acting(Visit visit);
   void find_contacts();
   void find_motions(Integrator& integrator);
   bool has_temperature(int node) const;
   void add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse);
 
   const Scene& scene_;
-  AtomicFile file_;
-  CsvWriter table_;
+  std::optional<AtomicFile> file_;
+  std::optional<CsvWriter> table_;
   std::vector<std::vector<Contact>> contacts_;  // per watched node
   std::vector<bool> is_alone_;                  // per watched node: no interface acts on it
   std::vector<std::size_t> motions_;            // loads that drive a watched node

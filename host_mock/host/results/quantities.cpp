@@ -14,16 +14,21 @@ using nlohmann::json;
 
 std::map<std::string, json> numbers_of(const json& summary) {
   std::map<std::string, json> numbers;
-  for (const char* part : {"steps", "dt", "time", "failure", "interrupted", "penetration_max", "stable_step",
-                           "energy", "status_counts", "forces", "seconds"}) {
-    if (!summary.contains(part)) continue;
-    const json flat = json{{part, summary[part]}}.flatten();
+  const auto add = [&](const std::string& part, const json& values) {
+    if (values.is_structured() && values.empty()) return;
+    const json flat = json{{part, values}}.flatten();
     for (const auto& [pointer, value] : flat.items()) {
       std::string name = pointer.substr(1);
       std::replace(name.begin(), name.end(), '/', '.');
       if (!value.is_structured()) numbers[name] = value;
     }
-  }
+  };
+  for (const char* part : {"steps", "dt", "time", "failure", "interrupted", "penetration_max", "stable_step",
+                           "energy", "status_counts", "forces", "coupling", "heat", "prestress", "seconds"})
+    if (summary.contains(part)) add(part, summary[part]);
+  for (const json& interface : summary.value("interfaces", json::array()))
+    for (const char* part : {"first_contact", "amounts"})
+      add(interface.at("name"), {{part, interface.at(part)}});
   numbers["warnings"] = summary.value("warnings", json::array()).size();
   return numbers;
 }

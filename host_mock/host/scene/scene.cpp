@@ -26,6 +26,7 @@ using nlohmann::json;
 void read_output(const json& output, Scene& scene) {
   scene.output.every = output.value("every", std::int64_t{1});
   scene.output.balance = output.value("balance", false);
+  scene.output.contact = output.value("contact", false);
   scene.output.events = output.value("events", false);
   scene.output.fields = output.value("fields", std::int64_t{0});
   const json watch = output.value("watch", json::array());

@@ -63,7 +63,6 @@ const ilaw_coupled_report& CoupledStep::solve(StepView step, const double* inver
 void CoupledStep::open(const StepView& step) {
   given_.clear();
   for (CoupledInterface& interface : interfaces_) given_.push_back(&interface.open(step));
-  for (CoupledInterface& interface : interfaces_) interface.give_temperatures();
   number_bodies();
 }
 

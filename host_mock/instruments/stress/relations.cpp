@@ -192,10 +192,10 @@ class Check {
     same_bits(
         "resumed", [&] { return resumed(); }, bits_of(run_) + energies_of(run_));
     same_bits(
-        "with plain steps",
+        "with contacts one by one",
         [&] {
           return state_of_a_run([](Scene& scene) {
-            for (const auto& interface : scene.interfaces) interface->step_plainly();
+            for (const auto& interface : scene.interfaces) interface->step_one_by_one();
           });
         },
         state_);
