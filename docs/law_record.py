@@ -29,6 +29,7 @@ sys.path.insert(0, str(ROOT / "api/python"))
 sys.dont_write_bytecode = True
 
 import ilaw  # noqa: E402
+from ilaw import protocols  # noqa: E402
 
 NODES, STEPS, STEP = 12, 40, 2.0**-10
 
@@ -75,7 +76,8 @@ def reference(law: str, parameters: dict[str, Any]) -> dict[str, Any]:
         v = free + np.array(step["impulse"]) / mass[:, None]
         steps.append(step)
     return {"law": law, "parameters": parameters, "velocity_step": STEP, "position_step": STEP, "area": 1.0,
-            "axes": "normal, tangents; scalar H [1/kg]; gap [m] of the step; impulse [N.s]", "steps": steps}  # fmt: skip
+            "axes": "normal, tangents; scalar H [1/kg]; gap [m] of the step; impulse [N.s]", "steps": steps,
+            "protocols": proven(law)}  # fmt: skip
 
 
 def differs_at(file: Path, law: str) -> int:
@@ -83,6 +85,29 @@ def differs_at(file: Path, law: str) -> int:
     source = json.loads(file.read_text(encoding="utf-8"))
     motion = Motion(law, source["parameters"])
     return next((k for k, step in enumerate(source["steps"]) if motion.impulse(step) != step["impulse"]), -1)
+
+
+def proven(law: str) -> dict[str, list[float]]:
+    """The nine numbers of each protocol of a law: displacement, velocity, sum of impulses at the end."""
+    return {p.name: protocols.Host(p).run().tolist() for p in protocols.PROTOCOLS.values() if p.law == law}
+
+
+def protocol_rows(law: str) -> list[str]:
+    rows = ["", "| protocol | closed form | found | because |", "| --- | --- | --- | --- |"]
+    for name, numbers in proven(law).items():
+        p = protocols.PROTOCOLS[name]
+        for quantity, (value, tolerance) in p.exact.items():
+            found = numbers[protocols.NAMES.index(quantity)]
+            rows.append(f"| {name} | {quantity} = {value:.17g} to {tolerance:.2g} | {found:.17g} | {p.because} |")
+    return rows if len(rows) > 3 else []
+
+
+def stressed(law: str) -> str:
+    """Counts of `ilaw stress` for random scenes of this law alone."""
+    words = ["stress", "--law", law, "--scenes", "20", "--steps", "300"]
+    found = subprocess.run([str(BUILD / "bin/ilaw"), *words], capture_output=True, text=True, check=False)
+    names, counts = (line.split() for line in found.stdout.strip().splitlines()[-2:])
+    return ", ".join(f"{count} {name}" for name, count in list(zip(names, counts))[1:5])
 
 
 def page(law: str, parameters: dict[str, Any]) -> str:
@@ -93,13 +118,14 @@ def page(law: str, parameters: dict[str, Any]) -> str:
     lines = [f"# {card['id']}: {card['title']}", "", card["doc"], "",
              f"- Version {library['version']}, by {library['vendor']}, licence {library['licence']}.",
              f"- Judged by `ilaw check`: {', '.join(f'{count} {result}' for result, count in sorted(judged.items()))}.",
+             f"- `ilaw stress`, seed 1: {stressed(law)}.",
              f"- Time: {time['ns_per_node']:.3g} ns per node, with {json.dumps(parameters)}, of 1000 nodes.", "",
              "| parameter | unit | default | range | |", "| --- | --- | --- | --- | --- |"]  # fmt: skip
     for p in card["parameters"]:
         span = ", ".join(p["choices"]) or f"{p['minimum']} to {p['maximum']}"
         default = "required" if p["default"] is None else p["default"]
         lines.append(f"| `{p['name']}` | {p['unit']} | {default} | {span} | {p['doc']} |")
-    return "\n".join([*lines, "", "To cite:", "", *(f"- {text}" for text in card["references"]), ""])
+    return "\n".join([*lines, *protocol_rows(law), "", "To cite:", "", *(f"- {text}" for text in card["references"]), ""])
 
 
 def main() -> int:

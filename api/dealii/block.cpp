@@ -60,7 +60,8 @@ void block::make_mesh() {
   std::vector<unsigned> repetitions;
   for (unsigned c = 0; c < 3; ++c)
     repetitions.push_back(std::max(1L, std::lround(options_.size[c] * options_.cells)));
-  GridGenerator::subdivided_hyper_rectangle(mesh_, repetitions, Point<3>(), options_.size, true);
+  GridGenerator::subdivided_hyper_rectangle(mesh_, repetitions, options_.corner,
+                                            options_.corner + options_.size, true);
   for (unsigned n = 0; n < options_.refinements; ++n) {
     for (const auto& cell : mesh_.active_cell_iterators())
       if (cell->is_locally_owned() && cell->at_boundary(lower_side)) cell->set_refine_flag();
@@ -146,6 +147,22 @@ distributed_vector block::areas(boundary_id side) const {
   }
   sum.compress(VectorOperation::add);
   return sum;
+}
+
+std::vector<std::array<Point<3>, 4>> block::facets(boundary_id side) const {
+  std::vector<std::array<Point<3>, 4>> found;
+  for (const auto& cell : dofs_.active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
+    for (const unsigned f : cell->face_indices()) {
+      const auto face = cell->face(f);
+      if (!face->at_boundary() || face->boundary_id() != side) continue;
+      std::array<Point<3>, 4> around{{face->vertex(0), face->vertex(1), face->vertex(3), face->vertex(2)}};
+      const double up = cross_product_3d(around[1] - around[0], around[3] - around[0])[2];
+      if ((up > 0.0) != (side == upper_side)) std::reverse(around.begin(), around.end());
+      found.push_back(around);
+    }
+  }
+  return found;
 }
 
 // 2/omega of the fastest oscillation by the power method, to two digits: the same on any number of ranks.

@@ -10,6 +10,7 @@
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/matrix_free/matrix_free.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ using dealii::types::boundary_id;
 using distributed_vector = dealii::LinearAlgebra::distributed::Vector<double>;
 
 struct block_options {
-  Point<3> size{2.0, 1.0, 0.5};
+  Point<3> size{2.0, 1.0, 0.5}, corner;
   unsigned cells = 4;        // along an edge of length 1
   unsigned refinements = 0;  // of the cells at the plane; the nodes between fine and coarse cells hang
   double young = 100.0, poisson = 0.3, density = 1.0;
@@ -27,7 +28,7 @@ struct block_options {
 // Hexahedra of 8 nodes, small strains. Every rank calls every function.
 class block {
  public:
-  static constexpr boundary_id pulled_side = 1, lower_side = 4;  // of the largest x; of the smallest z
+  static constexpr boundary_id pulled_side = 1, lower_side = 4, upper_side = 5;  // largest x; along z
 
   explicit block(const block_options& options);
 
@@ -44,6 +45,9 @@ class block {
   distributed_vector make_vector() const;
   void forces(const distributed_vector& u, distributed_vector& internal) const;
   distributed_vector areas(boundary_id side) const;  // integral of each shape function over a side
+  // Places of the corners of the facets of the lower or upper side that this rank has, each on one rank,
+  // counterclockwise as seen from outside.
+  std::vector<std::array<Point<3>, 4>> facets(boundary_id side) const;
   double critical_step() const;
   // FOLDER/block.vtu: displacements, and a nodal vector whose components have the given names.
   void write(const distributed_vector& u, const distributed_vector& nodal,

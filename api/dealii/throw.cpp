@@ -1,7 +1,5 @@
 // throw - a block is thrown on a plane, or glued to it and peeled off: mpirun -n 2 ./dealii_throw --law rccm
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plane_contact.hpp"
-
 #include <deal.II/base/conditional_ostream.h>
 #include <deal.II/base/mpi.h>
 
@@ -12,12 +10,14 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
-#include <ilaw/loader.hpp>
 #include <iostream>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "law.hpp"
+#include "plane_contact.hpp"
 
 namespace {
 
@@ -29,23 +29,6 @@ struct options {
   block_options block;
   double step = 0.0, end = 0.4, gap = 0.013, pull = 10.0;
 };
-
-ilaw::interface create_law(const std::string& law) {
-  ilaw::parameters parameters;
-  if (law != "contact") parameters.number("friction", 0.3);
-  if (law == "rccm") {
-    parameters.number("normal_stiffness", 1000.0).number("tangential_stiffness", 500.0);
-    parameters.number("adhesion_energy", 0.01).number("viscosity", 2e-4);
-  }
-  ilaw_setup setup{};
-  setup.struct_size = sizeof setup;
-  setup.dimension = 3;
-  setup.delassus_form = ILAW_DELASSUS_SCALAR;
-  setup.frame = ILAW_FRAME_GLOBAL;
-  setup.numbers = ILAW_NUMBERS_DOUBLE;
-  parameters.give(setup);
-  return {ilaw::library::named(law), "", setup};
-}
 
 // Central differences. The errors are relative to the largest energy or work so far; both are identities.
 class throw_run {

@@ -61,6 +61,8 @@ class LawRecord(unittest.TestCase):
         text = law_record.page("contact", {})
         self.assertIn("J.-J. Moreau, 1988", text)
         self.assertRegex(text, r"[0-9]+ not judged, [0-9]+ passed\.")
+        self.assertRegex(text, r"`ilaw stress`, seed 1: .*20 scenes")
+        self.assertIn("| drop | u.z = -0.0497", text)
         self.assertRegex(text, r"\| `restitution` \| 1 \| 0 \| 0 to 1 \|")
 
 

@@ -1,4 +1,4 @@
-"""Eight protocols that prove a host: small problems with known answers, in a form that any language reads.
+"""Protocols that prove a host: small problems with known answers, in a form that any language reads.
 
     python3 -m ilaw.protocols write FOLDER      writes FOLDER/NAME.txt, a protocol each
     python3 -m ilaw.protocols judge FOLDER      judges FOLDER/NAME.out, which your host wrote
@@ -87,9 +87,10 @@ def _protocols() -> list[Protocol]:
         "a pull of 8 breaks a strength of 0.4 N.s after 0.05 s; then F t^2 / (2 m), both to a step",
         {"strength": 0.4, "memory": 0.1}, force=(0.0, 0.0, 8.0))  # fmt: skip
     oblique = Protocol(
-        "oblique", "coulomb", h, 200, {"v.x": (0.4, tiny), "v.z": (1.0, tiny), "r.x": (-1.2, tiny), "r.z": (6.0, tiny)},
-        "v_n -> -e v_n, and friction takes mu (1 + e) v_n", {"friction": 0.2, "restitution": 0.5},
-        mass=2.0, position=(0.0, 0.0, 0.0997), velocity=(1.0, 0.0, -2.0))  # fmt: skip
+        "oblique", "coulomb", h, 200, {"v.x": (2.4, tiny), "v.z": (1.0, tiny), "r.x": (-1.2, tiny), "r.z": (6.0, tiny)},
+        "v_n -> -e v_n, and friction takes mu (1 + e) v_n, less than stops a sphere that turns",
+        {"friction": 0.2, "restitution": 0.5},
+        mass=2.0, position=(0.0, 0.0, 0.0997), velocity=(3.0, 0.0, -2.0))  # fmt: skip
     moving_wall = Protocol(
         "moving_wall", "contact", h, 200, {"v.z": (1.5, tiny), "r.z": (3.0, tiny)},
         "a wall of velocity 1 hits a mass at rest, which leaves with 1 + e", {"restitution": 0.5},
@@ -98,9 +99,53 @@ def _protocols() -> list[Protocol]:
     same = {name: oblique.exact[name] for name in ("r.x", "r.z")}
     units = replace(
         oblique, name="units", exact={**longer, **same}, because="oblique in t and mm: the same impulses", mass=2e-3,
-        position=(0.0, 0.0, 99.7), velocity=(1e3, 0.0, -2e3))  # fmt: skip
-    return [drop, slide, stick_slip, peel, oblique, moving_wall, units,
+        position=(0.0, 0.0, 99.7), velocity=(3e3, 0.0, -2e3))  # fmt: skip
+    return [drop, slide, stick_slip, peel, oblique, moving_wall, units, *_other_laws(h, peel),
             replace(peel, name="restart", restart=30, because="peel, saved and read back at step 30: the same bits")]  # fmt: skip
+
+
+def _other_laws(h: float, peel: Protocol) -> list[Protocol]:
+    """One point with a closed form for each: impulses that only these laws give."""
+    tiny = 1e-12
+    fall = math.sqrt(2 * 0.0497 / 10)
+    rise = 0.15 - fall
+    bounce = Protocol(
+        "bounce", "impact", h, 150, {"u.z": (5 * fall * rise - 5 * rise**2 - 0.0497, tiny)},
+        "falls for sqrt(2 z/g), leaves with e times that speed; exact at any step", {"restitution": 0.5},
+        mass=2.0, position=(0.0, 0.0, 0.0497), force=(0.0, 0.0, -20.0))  # fmt: skip
+    stiffness = 1e4
+    spring = Protocol(
+        "spring", "penalty", h, 200, {"v.z": (2.0, 2.0 * stiffness * h * h / (4 * 2.0))},
+        "a spring gives back the speed, to the energy k |g_n g_n+1| / 2 of two steps over its end",
+        {"stiffness": stiffness}, mass=2.0, position=(0.0, 0.0, 0.0997), velocity=(0.0, 0.0, -2.0))  # fmt: skip
+    hertz = replace(
+        spring, name="hertz", law="grain", exact={"v.z": (2.0, tiny), "r.z": (8.0, 4 * tiny)},
+        because="elastic spheres give back the speed, at any step", parameters={"radius": 0.1, "modulus": 1e6})  # fmt: skip
+    # Pulled by F from a strength s: m u'' = F - s (1 - u/w) up to w = 2 G/s, then F.
+    pull, strength, width, mass = 8.0, 4.0, 0.02, 2.0
+    start, growth = (pull - strength) / mass, math.sqrt(strength / (mass * width))
+    parted = math.acosh(1 + width * growth**2 / start) / growth
+    left = 0.2 - parted
+    end = width + start / growth * math.sinh(growth * parted) * left + pull / mass * left**2 / 2
+    soften = Protocol(
+        "soften", "cohesive", h, 200, {"u.z": (end, width * (growth * h) ** 2)},
+        "a traction that falls with the opening from 4 to 0 at 0.02, to the second order of the step",
+        {"strength": strength, "toughness": strength * width / 2}, mass=mass, force=(0.0, 0.0, pull))  # fmt: skip
+    post_it = replace(
+        peel, name="post_it", law="postit", parameters={"initial_adhesion": 0.4, "memory": 0.1},
+        because="an adhesion of 0.4 N.s breaks after 0.05 s as in peel")
+    bond, turns = 1000.0, math.sqrt(1000.0 / 2.0)
+    swing = Protocol(
+        "swing", "rccm", h, 200, {"u.z": (8 / bond * (1 - math.cos(0.2 * turns)), 8 / bond * (turns * h) ** 2)},
+        "a bond that stays intact is a spring: F/k (1 - cos wt), to the second order of the step",
+        {"normal_stiffness": bond, "tangential_stiffness": bond, "adhesion_energy": 1.0}, mass=2.0,
+        force=(0.0, 0.0, 8.0))  # fmt: skip
+    weaken = Protocol(
+        "weaken", "slip_weakening", h, 1000, {"u.x": (0.8, 20 * h * h), "u.z": (0.0, tiny)},
+        "friction falls from 0.6 to 0.2 over 0.2: v^2/2 = g (0.4 0.2 + 0.2 (x - 0.2)), to the second order",
+        {"friction": 0.6, "dynamic_friction": 0.2, "critical_slip": 0.2}, mass=2.0, velocity=(2.0, 0.0, 0.0),
+        force=(0.0, 0.0, -20.0))  # fmt: skip
+    return [bounce, spring, hertz, soften, post_it, swing, weaken]
 
 
 PROTOCOLS = {protocol.name: protocol for protocol in _protocols()}

@@ -4,6 +4,7 @@
 cases.py OUT: writes what came out to OUT/<ranks>.npz, nodes sorted by their place.
 cases.py OUT alone: one rank raises while the others wait for it.
 """
+import hashlib
 import json
 import os
 import sys
@@ -14,6 +15,7 @@ import numpy as np
 sys.path.insert(0, os.path.join(os.environ["ILAW_SOURCE"], "api/python/examples/dolfinx"))
 from block import MPI, Block, box, mesh_of  # noqa: E402
 from dolfinx import io, mesh  # noqa: E402
+from pair import Pair, make, thrown  # noqa: E402
 from throw import Fields, Throw, summary  # noqa: E402
 
 COMM = MPI.COMM_WORLD
@@ -40,11 +42,43 @@ def gathered(throw):
     block, at = throw.block, throw.nodes
     status, impulse = np.full(block.owned, -1.0), np.zeros((block.owned, 3))
     status[at], impulse[at] = throw.contact.status, throw.contact.impulse
-    rows = COMM.gather(np.column_stack([block.x, block.u, block.v, impulse, status]))
+    return by_place([block.x, block.u, block.v, impulse, status])
+
+
+def by_place(columns):
+    rows = COMM.gather(np.column_stack(columns))
     if COMM.rank:
         return None
     rows = np.concatenate(rows)
     return rows[np.lexsort(np.round(rows[:, :3], 9).T)]
+
+
+def run_pair(blocks, law, h, end, start):
+    """x, u, v of all nodes, those of the upper block first."""
+    pair = Pair(*blocks, law, h, start)
+    for _ in range(round(end / h)):
+        pair.step()
+    rows = [by_place([block.x, block.u, block.v]) for block in blocks]
+    order = hashlib.sha256(pair.interface.x.tobytes() + pair.interface.facets.tobytes()).hexdigest()
+    return (None if COMM.rank else np.concatenate(rows)), {**pair.summary(), "order": order}
+
+
+def waves(x):
+    return np.sin(x @ np.array([[3.1, 1.2, 2.3], [1.7, 4.1, 0.6], [2.2, 1.9, 3.7]]))
+
+
+def run_glued(out):
+    """Two blocks that are tied, and one block of the same elements whose nodes at z = 0.5 both would have."""
+    h, end, cells = 0.01, 0.5, [3, 3, 2]
+    size, cache = [1.0, 1.0, 0.5], out / "compiled"
+    blocks = [Block(box(size, cells, "hexahedra", [0.0, 0.0, z], wave=0.0), cache=cache) for z in (0.5, 0.0)]
+    found, said = run_pair(blocks, "tie", h, end, (waves, waves))
+    one = Block(box([1.0, 1.0, 1.0], [3, 3, 4], "hexahedra", wave=0.0), cache=cache)
+    one.v[:] = waves(one.x)
+    for _ in range(round(end / h)):
+        one.u += h * one.v
+        one.v -= h / one.mass[:, None] * one.forces()
+    return found, by_place([one.x, one.u, one.v]), said
 
 
 def run(law, shape, material, out, h, end, pull=0.0, fields=False, size=FLAT):
@@ -84,6 +118,10 @@ def main(out):
     results, said = {}, {}
     for name, case in CASES.items():
         results[name], said[name] = run(out=out, **case)
+    for shape, cells, h in (("tetrahedra", 5, 0.006), ("hexahedra", 4, 0.01)):
+        name, blocks = f"pair, {shape}", make(cells, shape, out / "compiled")
+        results[name], said[name] = run_pair(blocks, "coulomb", h, 0.24, (thrown, np.zeros_like))
+    results["pair, tied"], results["one block"], said["pair, tied"] = run_glued(out)
     if COMM.size == 1:
         # The drift of the stored energy of a material that is not linear is of second order in h.
         case = dict(CASES["coulomb, neo-hookean"], end=0.2, out=out)

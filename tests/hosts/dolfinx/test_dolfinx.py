@@ -65,6 +65,29 @@ def test_a_rank_without_interface_nodes_takes_part(runs):
         assert 0 in runs[ranks][0]["postit, tall"]["at_plane"]
 
 
+PAIRS = ["pair, tetrahedra", "pair, hexahedra", "pair, tied"]
+
+
+@pytest.mark.parametrize("ranks", RANKS)
+@pytest.mark.parametrize("name", PAIRS)
+def test_an_interface_of_two_blocks_does_not_depend_on_ranks(runs, ranks, name):
+    said, rows = runs[ranks][0][name], runs[ranks][1][name]
+    assert all(sum(count > 0 for count in of_rank) >= min(ranks, 2) for of_rank in said["of_ranks"])  # it is split
+    assert said["order"] == runs[1][0][name]["order"]  # of nodes and facets, to the bit
+    assert said["identity"] < 1e-13 and said["momentum"] < 1e-14
+    assert -0.9 < said["work"] < -0.05 or name == "pair, tied" and abs(said["work"]) < 1e-13
+    np.testing.assert_allclose(rows, runs[1][1][name], rtol=0, atol=1e-13)
+    assert np.abs(rows[:, 6:9]).max() > 0.1
+
+
+@pytest.mark.parametrize("ranks", RANKS)
+def test_two_tied_blocks_move_as_one(runs, ranks):
+    """Of the nodes at z = 0.5 the one block has one, the two blocks have one each."""
+    found, one = runs[ranks][1]["pair, tied"], runs[ranks][1]["one block"]
+    upper, lower = one[one[:, 2] > 0.5 - 1e-9], one[one[:, 2] < 0.5 + 1e-9]
+    np.testing.assert_allclose(found, np.concatenate([upper, lower]), rtol=0, atol=1e-12)
+
+
 def test_the_post_it_is_peeled_from_one_side(runs):
     said = runs[1][0]["postit, tetrahedra"]
     counts = said["status_counts"]

@@ -10,7 +10,7 @@ import traceback
 
 import numpy as np
 import ufl
-from dolfinx import fem, io, la, mesh
+from dolfinx import cpp, fem, io, la, mesh
 from mpi4py import MPI
 
 
@@ -24,15 +24,15 @@ def abort_all_ranks(kind, error, trace):
 sys.excepthook = abort_all_ranks
 
 
-def box(size, cells, shape="tetrahedra", **given):
-    """A box whose inner vertices are out of line, by the same amount whatever rank has them."""
+def box(size, cells, shape="tetrahedra", corner=(0.0, 0.0, 0.0), wave=0.15):
+    """A box whose inner vertices are out of line, by `wave` of a cell at most, the same whatever rank has them."""
     kind = {"tetrahedra": mesh.CellType.tetrahedron, "hexahedra": mesh.CellType.hexahedron}[shape]
-    size, corner = np.array(size, float), np.zeros(3)
-    made = mesh.create_box(MPI.COMM_WORLD, [corner, size], cells, kind, mesh.GhostMode.none, **given)
+    size, corner = np.array(size, float), np.array(corner, float)
+    made = mesh.create_box(MPI.COMM_WORLD, [corner, corner + size], cells, kind, mesh.GhostMode.none)
     x = made.geometry.x
-    inside = np.all((x > 1e-9 * size) & (x < (1 - 1e-9) * size), axis=1)
+    inside = np.all(np.abs(x - corner - 0.5 * size) < (0.5 - 1e-9) * size, axis=1)
     waves = np.array([[12.9898, 39.3461, 73.156], [78.233, 11.1352, 52.235], [37.719, 83.155, 9.151]])
-    x[inside] += 0.15 * size / cells * np.sin(x[inside] @ waves)
+    x[inside] += wave * size / cells * np.sin(x[inside] @ waves)
     return made
 
 
@@ -124,11 +124,27 @@ class Block:
     def largest(self, value):
         return self.comm.allreduce(value, MPI.MAX)
 
-    def facet(self, axis, end):
-        """A side of the box: its owned nodes, and the area [m^2] that belongs to each (0 elsewhere)."""
+    def _facets(self, axis, end):
+        """The facets of a side that this rank has: each is on one rank."""
         place = (self.x[:, axis].min() if end == "low" else -self.x[:, axis].max()) if self.owned else np.inf
         place = self.comm.allreduce(place, MPI.MIN) * (1 if end == "low" else -1)
-        facets = mesh.locate_entities_boundary(self.mesh, 2, lambda x: np.isclose(x[axis], place))
+        return mesh.locate_entities_boundary(self.mesh, 2, lambda x: np.isclose(x[axis], place))
+
+    def facet_places(self, axis, end):
+        """Places of the corners around each facet of a side on this rank, and of its owned nodes as in `facet`.
+
+        As the mesh has them, so that they have the same bits on all ranks, which x has not.
+        """
+        vertices = cpp.mesh.entities_to_geometry(self.mesh._mesh, 2, self._facets(axis, end), False)
+        if vertices.shape[1] == 4:
+            vertices = vertices[:, [0, 1, 3, 2]]  # around the facet, not by rows
+        of_nodes = np.empty((self._sum.array.size // 3, 3))
+        of_nodes[self.space.dofmap.list.array] = self.mesh.geometry.x[self.mesh.geometry.dofmap.array]
+        return self.mesh.geometry.x[vertices], of_nodes[self.facet(axis, end)[0]]
+
+    def facet(self, axis, end):
+        """A side of the box: its owned nodes, and the area [m^2] that belongs to each (0 elsewhere)."""
+        facets = self._facets(axis, end)
         tags = mesh.meshtags(self.mesh, 2, np.sort(facets), np.ones(len(facets), np.int32))
         side = ufl.Measure("ds", domain=self.mesh, subdomain_data=tags)(1)
         test = ufl.TestFunction(self.space)
