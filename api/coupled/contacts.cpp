@@ -230,8 +230,7 @@ Vector Contacts::relative(std::int64_t k, const Bodies& bodies) const {
 
 // The order of operations of ilaw.h, "out of reach". Whether a state is fresh the solver does not know.
 bool Contacts::is_out_of_reach(std::int64_t k, const Bodies& bodies) const {
-  if (!(info_.permissions & ILAW_MAY_SKIP_FREE) || is_weighted() || !theirs_.gap.values)
-    return false;
+  if (!(info_.permissions & ILAW_MAY_SKIP_FREE) || is_weighted() || !theirs_.gap.values) return false;
   const double gap = value(theirs_.gap, k) - value(theirs_.gap_offset, k);
   if (!(gap > 0.0) || !is_zero(start(theirs_.impulse, k))) return false;
   if (has_spins() && !is_zero(start(theirs_.moment, k))) return false;

@@ -174,8 +174,8 @@ class RigidKernel {
   const Layout& layout_;
 };
 
-// Weights of the counterpart's bodies are stored with a minus sign. An iteration over 17 ends takes a fifth of
-// the time of WeightedKernel, with the same bits.
+// Weights of the counterpart's bodies are stored with a minus sign. An iteration over 17 ends takes a fifth
+// of the time of WeightedKernel, with the same bits.
 class PointsKernel {
  public:
   static constexpr std::size_t width = 3;
