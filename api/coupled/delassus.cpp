@@ -54,8 +54,12 @@ void Contacts::fill_weights(Block& block, std::size_t lane, std::int64_t k) cons
     const ilaw_input& given = first_side ? given_.body_weight : given_.counterpart_weight;
     const std::uint32_t i = first_side ? e : e - body_count_;
     const double sign = first_side ? 1.0 : -1.0;
+    if (layout_.weight_size == 1) {
+      weight_at(e, 0) = sign * (given.values ? value(given, k, i) : 1.0);
+      continue;
+    }
     for (int c = 0; c < layout_.weight_size; ++c) weight_at(e, c) = 0.0;
-    const auto d = static_cast<int>(layout_.weight_size > 1 ? dimension_ : 1);
+    const auto d = static_cast<int>(dimension_);
     for (int row = 0; row < d; ++row)
       for (int column = 0; column < d; ++column) {
         const double unit = row == column ? 1.0 : 0.0;
