@@ -174,8 +174,8 @@ class RigidKernel {
   const Layout& layout_;
 };
 
-// Weights of the counterpart's bodies are stored with a minus sign. An iteration over 17 ends takes a fifth
-// of the time of WeightedKernel, with the same bits.
+// Weights of the counterpart's bodies are stored with a minus sign. With 17 ends, gather and scatter
+// have a third of the instructions of WeightedKernel, and the same bits.
 class PointsKernel {
  public:
   static constexpr std::size_t width = 3;
