@@ -170,7 +170,9 @@ void Contacts::lay_out(const Bodies& bodies) {
                           : has_spins()                                      ? 5
                                         : static_cast<int>(dimension_ * (dimension_ + 1) / 2);
   const bool weighted = is_weighted();
+  const bool has_rows = !bodies.rotate() && bodies.are_isotropic() && layout_.weight_size == 1;
   kind_ = has_spins()                                        ? Kind::spin
+          : weighted && has_rows                             ? Kind::points
           : weighted                                         ? Kind::weighted
           : !bodies.are_isotropic()                          ? Kind::rigid
           : !bodies.rotate()                                 ? Kind::point
@@ -230,8 +232,7 @@ Vector Contacts::relative(std::int64_t k, const Bodies& bodies) const {
 
 // The order of operations of ilaw.h, "out of reach". Whether a state is fresh the solver does not know.
 bool Contacts::is_out_of_reach(std::int64_t k, const Bodies& bodies) const {
-  if (!(info_.permissions & ILAW_MAY_SKIP_FREE) || kind_ == Kind::weighted || !theirs_.gap.values)
-    return false;
+  if (!(info_.permissions & ILAW_MAY_SKIP_FREE) || is_weighted() || !theirs_.gap.values) return false;
   const double gap = value(theirs_.gap, k) - value(theirs_.gap_offset, k);
   if (!(gap > 0.0) || !is_zero(start(theirs_.impulse, k))) return false;
   if (has_spins() && !is_zero(start(theirs_.moment, k))) return false;
@@ -257,7 +258,7 @@ bool Contacts::fill(Block& block, std::size_t lane, std::int64_t k, const Bodies
     block.column(layout_.direction + c)[lane] = block.column(layout_.change + c)[lane] = 0.0;
   bool acts = true;
   if (layout_.arm >= 0) {
-    const bool is_wall = kind_ != Kind::weighted && end(k, 1) == bodies.wall();
+    const bool is_wall = layout_.weight < 0 && end(k, 1) == bodies.wall();
     const Vector arm = vector(given_.arm, k, 3);
     const Vector other = is_wall ? Vector{} : vector(given_.counterpart_arm, k, 3);
     if (is_transverse() && (leads_aside(arm, normal) || leads_aside(other, normal))) return false;

@@ -40,7 +40,9 @@ class Contacts {
   // Writes all columns of contact k into a lane; false where an arm is not along the normal.
   bool fill(Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const;
   // Whether nothing moves along this axis of the host, so that H has a small number for it.
-  bool may_be_held() const { return (kind_ == Kind::rigid || kind_ == Kind::weighted) && !is_transverse(); }
+  bool may_be_held() const {
+    return (kind_ == Kind::rigid || kind_ == Kind::points || kind_ == Kind::weighted) && !is_transverse();
+  }
   bool is_held(const Block& block, std::size_t lane, std::size_t axis) const;
   // Gaps below what this velocity, or this part of a contact's own, makes in a step become 0, so that
   // contacts that act where they are closed do not open by rounding.

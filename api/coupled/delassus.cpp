@@ -54,8 +54,12 @@ void Contacts::fill_weights(Block& block, std::size_t lane, std::int64_t k) cons
     const ilaw_input& given = first_side ? given_.body_weight : given_.counterpart_weight;
     const std::uint32_t i = first_side ? e : e - body_count_;
     const double sign = first_side ? 1.0 : -1.0;
+    if (layout_.weight_size == 1) {
+      weight_at(e, 0) = sign * (given.values ? value(given, k, i) : 1.0);
+      continue;
+    }
     for (int c = 0; c < layout_.weight_size; ++c) weight_at(e, c) = 0.0;
-    const auto d = static_cast<int>(layout_.weight_size > 1 ? dimension_ : 1);
+    const auto d = static_cast<int>(dimension_);
     for (int row = 0; row < d; ++row)
       for (int column = 0; column < d; ++column) {
         const double unit = row == column ? 1.0 : 0.0;
@@ -63,14 +67,20 @@ void Contacts::fill_weights(Block& block, std::size_t lane, std::int64_t k) cons
         weight_at(e, 3 * row + column) = sign * (given.values ? value(given, k, at) : unit);
       }
   }
-  for (std::uint32_t e = 0; e < ends(); ++e)
-    for (std::uint32_t f = e + 1; f < (e < body_count_ ? body_count_ : ends()); ++f) {
-      if (end_at(f) != end_at(e)) continue;
-      for (int c = 0; c < layout_.weight_size; ++c) {
-        weight_at(e, c) += weight_at(f, c);
-        weight_at(f, c) = 0.0;
-      }
+  std::uint64_t seen = 0;  // by the last digits of bodies: few contacts name a body twice
+  for (std::uint32_t f = 0; f < ends(); ++f) {
+    if (f == body_count_) seen = 0;
+    const std::uint64_t digits = std::uint64_t{1} << (static_cast<std::uint32_t>(end_at(f)) % 64U);
+    const bool is_known = (seen & digits) != 0;
+    seen |= digits;
+    if (!is_known) continue;
+    std::uint32_t e = f < body_count_ ? 0 : body_count_;
+    while (end_at(e) != end_at(f)) ++e;
+    for (int c = 0; e < f && c < layout_.weight_size; ++c) {
+      weight_at(e, c) += weight_at(f, c);
+      weight_at(f, c) = 0.0;
     }
+  }
 }
 
 // The sum of B M^-1 B' over the bodies of a contact, by the velocity that a unit impulse makes at each.

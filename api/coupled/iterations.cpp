@@ -99,13 +99,16 @@ Outcome Iterations::conjugate(Blocks& blocks, Progress& progress, std::uint32_t 
 
 void Iterations::extrapolate_bodies(double beta) {
   Body* now = problem_.bodies.now();
+  const bool rotate = problem_.bodies.rotate();
   const auto extrapolate = [&](std::size_t b) {
     Motion& direction = direction_[b];
-    const Vector v = now[b].velocity - start_[b].velocity, w = now[b].spin - start_[b].spin;
-    now[b].velocity = now[b].velocity + beta * direction.velocity;
-    now[b].spin = now[b].spin + beta * direction.spin;
-    direction = {beta * direction.velocity + v, beta * direction.spin + w};
-    start_[b] = {now[b].velocity, now[b].spin};
+    const auto go_on = [beta](Vector& value, Vector& along, Vector& start) {
+      const Vector change = value - start;
+      start = value = value + beta * along;
+      along = beta * along + change;
+    };
+    go_on(now[b].velocity, direction.velocity, start_[b].velocity);
+    if (rotate) go_on(now[b].spin, direction.spin, start_[b].spin);
   };
   sweep_.share(direction_.size(), knobs::few_bodies, [&](std::size_t first, std::size_t end) {
     for (std::size_t b = first; b < end; ++b) extrapolate(b);
