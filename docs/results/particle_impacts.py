@@ -2,6 +2,7 @@
 """The eight tests of Chung and Ooi (2011), Granular Matter 13: impacts of one or two spheres, in four hosts.
 
     docs/results/particle_impacts.py [--hosts run,python,lammps,yade] [--tests 1,2,...] [--points]
+    docs/results/particle_impacts.py --picture FILE     the curves of test 4, in Python; needs matplotlib
 
 Runs the laws coulomb, penalty and grain in `ilaw run` (tests 1 to 3, since its points do not rotate), in Python, in
 LAMMPS and in Yade, and the own models of LAMMPS and Yade beside them; prints the tables of particle_impacts.md, with
@@ -23,7 +24,7 @@ import numpy as np
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from particle_hosts import HOSTS, Found, in_yade  # noqa: E402
+from particle_hosts import HOSTS, Found, in_python, in_yade  # noqa: E402
 
 RESOLUTIONS = (17, 53, 170)  # steps within the impact: no factor in common
 LAWS = ("coulomb", "penalty", "grain")
@@ -211,6 +212,11 @@ PRINTED = {0.353: 0.430, 0.682: 0.820, 1.341: 1.664, 2.0: 2.524, 2.988: 3.904, 3
 ALUMINA, ALLOY = Sphere(2.5e-3, 4000.0, 3.8e11, 0.23), Sphere(0.1, 2700.0, 7e10, 0.33)
 
 
+def oblique(angle: np.ndarray, exact: Callable[[Test, str], Found], judge: str) -> Test:
+    speed, along = 3.9 * np.cos(angle), 3.9 * np.sin(angle)
+    return Test("4 angles at 3.9 m/s", ALUMINA, speed, along, 0.0 * angle, exact, judge, restitution=0.98, friction=0.092)
+
+
 def tests() -> list[Test]:
     none = np.zeros(1)
     glass, limestone = Sphere(0.01, 2800.0, 4.8e10, 0.2), Sphere(0.01, 2500.0, 2e10, 0.25)
@@ -223,10 +229,7 @@ def tests() -> list[Test]:
               for e in (0.2, 0.4, 0.6, 0.8, 1.0)]  # fmt: skip
     slides = {"exact": gross_sliding, "judge": "Coulomb, where it slides"}
     angle = np.radians(list(KHARAZ))
-    oblique = dict(sphere=ALUMINA, speed=3.9 * np.cos(angle), along=3.9 * np.sin(angle), spin=0.0 * angle,
-                   restitution=0.98, friction=0.092)  # fmt: skip
-    found += [Test("4 angles at 3.9 m/s", **oblique, **slides),
-              Test("4 angles at 3.9 m/s", **oblique, exact=kharaz, judge="experiment, Kharaz et al. 2001")]  # fmt: skip
+    found += [oblique(angle, **slides), oblique(angle, kharaz, "experiment, Kharaz et al. 2001")]
     steel = Sphere(1e-5, 7850.0, 2.08e11, 0.3)
     for points, judged in ((WU, slides), (WU, {"exact": of_figure(WU), "judge": "finite elements, Wu *"}),
                            (PRINTED, {"exact": of_figure(PRINTED), "judge": "curve printed for steel *"})):  # fmt: skip
@@ -272,7 +275,11 @@ def main() -> None:
     parser.add_argument("--hosts", default="run,python,lammps,yade")
     parser.add_argument("--tests", default="1,2,3,4,5,6,7,8")
     parser.add_argument("--points", action="store_true", help="print each curve")
+    parser.add_argument("--picture", type=Path, metavar="FILE")
     given = parser.parse_args()
+    if given.picture:
+        picture(given.picture)
+        return
     hosts, chosen = given.hosts.split(","), [test for test in tests() if test.name[0] in given.tests.split(",")]
     found = measure(chosen, hosts)
     models = [(law, hosts) for law in LAWS] + [("own", [host]) for host in hosts if host in ("lammps", "yade")]
@@ -309,6 +316,24 @@ def differ(chosen: list[Test], hosts: list[str], law: str, found: Results) -> fl
                 if len(values) > 1:
                     worst = max(worst, float(np.ptp(values, axis=0).max() / np.abs(test.speed).max()))
     return worst
+
+
+def picture(file: Path) -> None:
+    import matplotlib.pyplot as plt
+    from case_script import save
+
+    figure, plot = plt.subplots(figsize=(6.2, 3.6))
+    angles = np.linspace(3.0, 88.0, 86)
+    test = oblique(np.radians(angles), kharaz, "")
+    for law, style in (("penalty", "tab:orange"), ("grain", "tab:blue"), ("coulomb", "gray")):
+        found = in_python(test, law, 53)["tangential velocity"] / test.along
+        plot.plot(angles, found, "--" if law == "coulomb" else "-", color=style, lw=1, label=law)
+    plot.plot(list(KHARAZ), list(KHARAZ.values()), "ko", ms=4, label="measured (Kharaz et al. 2001)")
+    plot.set_xlabel("angle of impact to the normal [degrees]")
+    plot.set_ylabel("rebound / impact velocity\nalong the plate")
+    plot.set_ylim(0.5, 1.02)
+    plot.legend(fontsize=8, frameon=False, loc="lower right")
+    save(figure, file)
 
 
 if __name__ == "__main__":
