@@ -56,7 +56,7 @@ MEASURED = {
     "docs/results/img/tyre_block.png": "docs/results/tyre_block.py",
     "docs/img/mortar_pressure.svg": "docs/results/dual_mortar.py",
     "docs/img/pressure.svg": "docs/results/pressure.py",
-    "docs/img/oblique_sphere.svg": "docs/results/oblique_sphere.py",
+    "docs/img/particle_impacts.svg": "docs/results/particle_impacts.py",
     "docs/img/contact_problems.png": "tests/bench/contact_problems.py",
     "docs/img/dealii_peel.svg": "api/dealii/compare.py",
 }  # fmt: skip

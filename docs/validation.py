@@ -241,6 +241,40 @@ def hertz_impacts() -> list[Case]:
                  lambda found: float(np.count_nonzero(found["n0.r0"])) * found.summary["dt"], 1.5e-2)]  # fmt: skip
 
 
+def steel_bar() -> list[Case]:
+    """Without restitution, with the values of arXiv 2606.01355; the step avoids the critical one."""
+    young, density, length, section, speed = 2.1e11, 7847.0, 0.254, 6.45e-4, 5.0
+    gap, celerity = 1e-3 * length, math.sqrt(young / density)
+    contact = gap / speed, gap / speed + 2.0 * length / celerity
+    scene = {
+        "title": "A bar of steel meets a wall",
+        "model": {"type": "bars", "bars": [{"start": gap, "length": length, "elements": 200, "young": young,
+                                            "density": density, "section": section, "velocity": -speed}]},
+        "time": {"cfl": 0.9, "end": contact[1] + length / celerity},
+        "interfaces": [{"name": "wall", "law": "contact", "nodes": "bar0.left",
+                        "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}],
+        "output": {"every": 1, "watch": [0], "forces": ["wall"], "balance": True},
+    }  # fmt: skip
+    source = "S sqrt(rho E) v; energy at impact, a case of Di Stasio et al. 2019 *"
+
+    def middle(found: Found) -> float:
+        inside = (found.time > contact[0] + 0.2 * length / celerity) & (found.time < contact[1] - 0.2 * length / celerity)
+        return float(found["wall.F0"][inside].mean())
+
+    return [Case("bar of steel on a wall", "force [N]", source, scene, section * math.sqrt(density * young) * speed, middle,
+                 5e-3, (1e8, 1e12)),
+            Case("bar of steel on a wall", "energy lost over energy", "0: the wave carries all of it", scene, 0.0,
+                 lambda found: found.summary["energy"]["dissipated_impact"] / (0.5 * density * section * length * speed**2), 1e-2)]  # fmt: skip
+
+
+def turning_spring() -> Case:
+    scene = json.loads((ROOT / "docs/results/scenes/rotating_spring.json").read_text(encoding="utf-8"))
+    scene["time"]["end"], scene["output"]["every"] = 20.0, 1
+    return Case("mass on a spring turns about a disc", "least angular momentum [kg m^2/s]",
+                "r x m v, a case of Di Stasio et al. 2019 *", scene, 3.0,
+                lambda found: float(found["balance.angular_momentum0"].min()), 1e-12)  # fmt: skip
+
+
 def rubber(found: Found) -> float:
     """Force of the floor at the stretch that is reached; sideways the stress is 0."""
     mu, bulk = 0.5e6 / 1.3, 1e6 * 0.3 / (1.3 * 0.4)
@@ -312,6 +346,8 @@ CASES = [
          HOST / "impact_oscillator.json", fifth_impact(), lambda found: last_with(found, "n0.r0"), 2e-3),
     Case("stick-slip on a belt", "instant of the seventh turn [s]", "harmonic while it slips", HOST / "stick_slip.json",
          0.5 + 3 * 0.4 + 3 * 0.2 * (math.pi - math.atan(2.0)), seventh_turn, 1e-2),
+    *steel_bar(),
+    turning_spring(),
     shaken_ball(),
     rope_on_drum(),
     vibrated_friction(),

@@ -162,15 +162,17 @@ def hertz(kind, elements=12, half_width=1.0, radius=100.0, poisson=0.3):
     element = modulus * area / first
     mass = 0.5 * numpy.asarray(abs(stiffness).sum(axis=1)).ravel()  # Gershgorin: 0.7 of the critical step is 1
     mass[foot] += 0.5 * spring * element
-    contact = contact_of(kind, 1.0, 1.0 / mass[foot], element)
+    damping = 0.01  # implicit, so it adds to the mass that the contact feels
+    acts = 1.0 / ((1 + damping) * mass)
+    contact = contact_of(kind, 1.0, acts[foot], element)
     initial = x**2 / (2 * radius)
     moved, velocity = numpy.zeros_like(force), numpy.zeros_like(force)
-    damping, before = 0.01, numpy.full(len(x), math.inf)
+    before = numpy.full(len(x), math.inf)
     for k in range(100000):
         moved += velocity
-        velocity = free * ((1 - damping) * velocity + (force - stiffness @ moved) / mass) / (1 + damping)
+        velocity = free * ((1 - damping) / (1 + damping) * velocity + acts * (force - stiffness @ moved))
         impulse = contact(velocity[foot], initial + moved[foot], 1.0)
-        velocity[foot] += impulse / mass[foot]
+        velocity[foot] += acts[foot] * impulse
         pressure = impulse / area / top
         if k % 200 == 0:
             if abs(pressure - before).max() < 1e-6:
