@@ -76,19 +76,6 @@ TEST(CoupledHeap, SettlesAndMakesNoEnergy) {
   }
 }
 
-// After some collisions: bits, iterations and moments.
-TEST(CoupledHeap, SameInputGivesTheSameBits) {
-  Grains one = heap(1e-3), two = heap(1e-3);
-  one.run(0.1), two.run(0.1);
-  EXPECT_EQ(one.impulse, two.impulse);
-  EXPECT_EQ(one.moment, two.moment);
-  EXPECT_EQ(one.iterations, two.iterations);
-  for (std::size_t i = 0; i < one.grains.size(); ++i) {
-    EXPECT_EQ(one.grains[i].v, two.grains[i].v);
-    EXPECT_EQ(one.grains[i].w, two.grains[i].w);
-  }
-}
-
 // Lengths in units of 2^-10 m: the same bits, times powers of two. A spin that were compared with velocities
 // by its number alone would end iterations elsewhere.
 TEST(CoupledHeap, UnitOfLengthChangesNothing) {
