@@ -1,5 +1,6 @@
-// Nothing but its own checkpoint will do for a run to go on from. That it goes on to the same bits, of every shipped
-// scene and law, is a relation ("resumed", relations_test.cpp); faults/run_folder_test.py interrupts anywhere.
+// Nothing but its own checkpoint will do for a run to go on from. That it goes on to the same bits, of every
+// shipped scene and law, is a relation ("resumed", relations_test.cpp); faults/run_folder_test.py interrupts
+// anywhere.
 #include "results/checkpoint.hpp"
 #include "base/bytes.hpp"
 #include "host_runner.hpp"

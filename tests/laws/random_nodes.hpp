@@ -49,7 +49,8 @@ class RandomNodes {
         gap(size),
         area(size) {
     for (double& each : area) {
-      for (std::uint32_t k = 0; k < (dimension == 2 ? 1U : 6U); ++k) uniform();  // axes, in the sequence of old
+      for (std::uint32_t k = 0; k < (dimension == 2 ? 1U : 6U); ++k)
+        uniform();  // axes, in the sequence of old
       each = uniform(0.5, 2.0);
     }
   }
