@@ -164,24 +164,6 @@ TEST(Bench, NamesTheEntryOfAFileThatItRefuses) {
   }
 }
 
-// An option of any command that takes a number wants a finite one of its range.
-TEST(Options, RefuseWhatIsNoNumberOfTheirRange) {
-  const std::pair<const char*, const char*> options[] = {
-      {"bench contact --touching", "from 0 to 1"},
-      {"bench contact --pressed", "from 0 to 1"},
-      {"check contact --limit", "from 0.1 to 3600"},
-      {"converge scene.json --out x --factor", "from 1.01 to 10"},
-      {"study scene.json --out x --factor", "from 1.01 to 10"}};
-  for (const auto& [command, allowed] : options)
-    for (const char* value : {"nan", "-nan", "inf", "-1", "4000", "many", "0.5x"}) {
-      const std::string text = command, option = text.substr(text.rfind(' ') + 1);
-      const Outcome outcome = run_program(text + "=" + value);
-      const std::string said = option + ": found '" + value + "', expected a number ";
-      EXPECT_EQ(outcome.code, 2) << text << " " << value;
-      EXPECT_THAT(outcome.output, HasSubstr(said + allowed)) << text;
-    }
-}
-
 // A law would take another one without a word.
 TEST(Environment, AnInstructionSetThatNoLawKnowsIsRefused) {
   for (const char* value : {"", "V3", "avx2", "v2", "v5", "v3 "}) {
@@ -192,28 +174,6 @@ TEST(Environment, AnInstructionSetThatNoLawKnowsIsRefused) {
   }
   for (const char* value : {"baseline", "v3", "v4"})
     EXPECT_EQ(run_program("list", std::string("ILAW_ISA=") + value + " ").code, 0) << value;
-}
-
-TEST(Bench, RefusesWhatCannotBeMeasured) {
-  const std::pair<const char*, const char*> refusals[] = {
-      {"", "found nothing to measure"},
-      {"no_such_law", "no_such_law"},
-      {"contact --law coulomb", "--law: found 'coulomb', which is not in"},
-      {"contact --delassus round",
-       "delassus: found 'round', expected one of scalar, diagonal, transverse, full, transverse_spin"},
-      {"contact --layout aos,zigzag", "layout: found 'zigzag', expected one of aos, soa"},
-      {"contact --parameters '{\"restitution\": 2}'", "restitution"},
-      {"contact --parameters '{'", "--parameters: found '{', expected an object in JSON"},
-      {"contact --nodes 0", "--nodes"},
-      {"contact --touching 2", "--touching"},
-      {"contact --nodes 1000000000000", "--nodes: found 1000000000000, whose arrays take"},
-      {ILAW_BROKEN_LAW " --float", "it does not serve arrays of float"},
-      {"--cases nowhere.json", "nowhere.json: no such file"}};
-  for (const auto& [arguments, said] : refusals) {
-    EXPECT_THAT(run_program(std::string("bench ") + arguments), Exits(2, HasSubstr(said))) << arguments;
-  }
-  EXPECT_THAT(run_program("bench " ILAW_VISCOUS_C " --delassus full"),
-              Exits(2, HasSubstr("found H full, which it does not serve; expected one of scalar")));
 }
 
 }  // namespace

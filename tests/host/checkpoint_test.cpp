@@ -1,110 +1,15 @@
-// A run that goes on from a checkpoint goes on to the same bits, and nothing but its own checkpoint will do.
+// Nothing but its own checkpoint will do for a run to go on from. That it goes on to the same bits, of every
+// shipped scene and law, is a relation ("resumed", relations_test.cpp); faults/run_folder_test.py interrupts
+// anywhere.
 #include "results/checkpoint.hpp"
 #include "base/bytes.hpp"
 #include "host_runner.hpp"
-
-#include <omp.h>
 
 #include <cstring>
 #include <new>
 
 namespace ilaw::host::testing {
 namespace {
-
-std::string saved(const Integrator& integrator) {
-  std::ostringstream state;
-  integrator.save(state);
-  return state.str();
-}
-
-// ---- in one process -------------------------------------------------------------------------------------
-
-// Friction of a spring with a history vector, on a plane that is not along the axes.
-json dragged_block() {
-  return json::parse(R"({
-    "model": {"type": "points", "dimension": 3, "points": [
-      {"mass": 1, "position": [0, 0, 0], "velocity": [1, 0.5, 0]}, {"mass": 2, "position": [1, 0, 3], "velocity": [0, 1, -1]}]},
-    "time": {"dt": 0.001, "end": 0.6}, "loads": [{"type": "gravity", "acceleration": [0, 0, -10]}],
-    "interfaces": [{"law": "penalty", "nodes": "all",
-      "parameters": {"stiffness": 1e4, "friction": 0.2, "tangential_stiffness": 5e3, "damping": 3, "integration": "implicit"},
-      "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0.1, 0, 1]}}]})");
-}
-
-// A cohesive zone that opens node by node: damage, and the positions that it remembers.
-json peeled_beam() {
-  return json::parse(R"({
-    "model": {"type": "blocks", "blocks": [{"name": "beam", "size": [1, 0.1, 0.05], "elements": [20, 1, 2],
-      "material": {"type": "linear", "young": 1, "poisson": 0, "density": 1}}]},
-    "time": {"cfl": 0.9, "end": 60},
-    "loads": [{"type": "damping", "rate": 0.5},
-      {"type": "motion", "nodes": {"box": [[0.999, -1, 0.049], [1.001, 1, 0.051]]}, "axes": [2], "path": [[0, 0, 0, 0], [60, 0, 0, 0.01]]}],
-    "interfaces": [{"law": "cohesive", "nodes": "beam.z_min", "parameters": {"shape": "bilinear", "strength": 2e-5, "toughness": 5e-8},
-      "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})");
-}
-
-// A point that slips off a ball: the axes of its bond have turned with the normal before it is touched.
-json slipping_point() {
-  return json::parse(R"({
-    "model": {"type": "points", "dimension": 3, "points": [
-      {"mass": 1, "area": 0, "position": [0, 0, 0]}, {"mass": 1, "area": 0, "position": [0, -0.2, 0], "velocity": [1, 0, -0.5]}]},
-    "time": {"dt": 0.0003, "end": 0.0676},
-    "interfaces": [{"law": "postit", "nodes": "all", "parameters": {"memory": "inf"},
-      "obstacle": {"type": "sphere", "center": [0, 0, -5], "radius": 5}}]})");
-}
-
-std::vector<std::pair<std::string, json>> resumed_scenes() {
-  json strip = shipped("postit_3d");
-  strip["model"]["blocks"][0]["elements"] = {20, 2, 1};
-  std::vector<std::pair<std::string, json>> scenes{{"cohesive", peeled_beam()},
-                                                   {"postit_3d", strip},
-                                                   {"penalty_history", dragged_block()},
-                                                   {"slipping_point", slipping_point()}};
-  for (const char* name : {"block_impact", "two_blocks", "rotating_spring", "postit_test2", "postit_test3",
-                           "two_bars", "bouncing_ball"})
-    scenes.emplace_back(name, shipped(name));
-  json mortar = shipped("two_blocks");
-  mortar["interfaces"][1]["against"]["discretization"] = "dual_mortar";
-  scenes.emplace_back("two_blocks_by_dual_mortar", mortar);
-  return scenes;
-}
-
-class Resumed : public ::testing::TestWithParam<std::pair<std::string, json>> {};
-
-// Saved in the middle, at drawn steps, read into a fresh run, and both go on: displacements, velocities and
-// impulses of each step, and the energies in the end.
-TEST_P(Resumed, GoesOnToTheSameBits) {
-  omp_set_num_threads(1);
-  std::mt19937 engine(30);
-  for (int k = 0; k < 3; ++k) {
-    Scene scene = scene_of(GetParam().second), copy = scene_of(GetParam().second);
-    Integrator uninterrupted = integrator_of(scene), resumed = integrator_of(copy);
-    const auto stop = std::uniform_int_distribution<std::int64_t>(0, scene.steps - 1)(engine);
-    while (uninterrupted.steps() < stop) uninterrupted.step();
-    std::istringstream state(saved(uninterrupted));
-    resumed.load(state);
-    ASSERT_EQ(resumed.steps(), stop) << "k " << k;
-    while (resumed.steps() < scene.steps) {
-      resumed.step();
-      uninterrupted.step();
-      ASSERT_TRUE(same_bits(resumed.displacement(), uninterrupted.displacement())) << resumed.steps();
-      ASSERT_TRUE(same_bits(resumed.velocity(), uninterrupted.velocity())) << resumed.steps();
-      ASSERT_TRUE(same_bits(resumed.interface_impulse(), uninterrupted.interface_impulse()))
-          << resumed.steps();
-    }
-    const EnergyReport energy = resumed.energy(), wanted = uninterrupted.energy();
-    EXPECT_EQ(energy.interface_work, wanted.interface_work) << "k " << k;
-    EXPECT_EQ(energy.balance_error, wanted.balance_error) << "k " << k;
-    EXPECT_EQ(energy.by_law, wanted.by_law) << "k " << k;
-    EXPECT_EQ(energy.least_dissipation, wanted.least_dissipation) << "k " << k;
-    EXPECT_EQ(resumed.tally().status_counts, uninterrupted.tally().status_counts) << "k " << k;
-    EXPECT_EQ(resumed.tally().penetration_max, uninterrupted.tally().penetration_max) << "k " << k;
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Checkpoint, Resumed, ::testing::ValuesIn(resumed_scenes()),
-                         [](const auto& drawn) { return drawn.param.first; });
-
-// ---- the program ----------------------------------------------------------------------------------------
 
 // Nothing to go on from is bad input, found before anything ran: nothing is written.
 TEST(Checkpoint, OfNoRunOrAnotherOneIsRefused) {

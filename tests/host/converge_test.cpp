@@ -253,53 +253,5 @@ TEST(Converge, WritesIntoAFolderWithAQuote) {
   EXPECT_EQ(json_of(folder / "converge.json")["title"], scene["title"]);
 }
 
-TEST(Converge, RefusesWhatItCannotCompare) {
-  const auto refusal = [](const json& scene, const std::string& options) {
-    const Study study = study_of(scene, options);
-    EXPECT_EQ(study.outcome.code, 2) << study.outcome.output;
-    EXPECT_FALSE(fs::exists(study.folder / "results"));
-    return study.outcome.output;
-  };
-  json unwatched = shipped("postit_test2");
-  unwatched["output"].erase("watch");
-  EXPECT_THAT(refusal(unwatched, ""), HasSubstr("/output/watch: found no node, expected those to compare"));
-  EXPECT_THAT(refusal(shipped("postit_test2"), "--refine mesh"),
-              HasSubstr("/converge/refine: found \"mesh\""));
-  json thrown = ball(0.5);
-  thrown["model"]["points"][0]["velocity"] = {1.0};
-  EXPECT_THAT(refusal(thrown, ""), HasSubstr("/exact: expected one point at rest in 1D"));
-  json late = shipped("glued_bar");
-  late["time"]["end"] = 3.5;
-  EXPECT_THAT(refusal(late, ""), HasSubstr("/exact: expected a window longer than R_Y/(2F)"));
-  json alone = shipped("two_bars");
-  alone["output"]["watch"] = {"right.left"};
-  EXPECT_THAT(refusal(alone, ""), HasSubstr("/exact: expected two bars"));
-  json unknown = ball(0.5);
-  unknown["exact"]["type"] = "flea_circus";
-  EXPECT_THAT(refusal(unknown, ""), HasSubstr("/exact/type"));
-  // A number is another point on every mesh.
-  const auto numbered = [&](const char* where, const json& nodes) {
-    json scene = shipped("two_bars");
-    scene.erase("exact");
-    scene[json::json_pointer(where)] = nodes;
-    const std::string said = refusal(scene, "--refine mesh");
-    EXPECT_THAT(said, HasSubstr("on a refined mesh a number is another node"));
-    return said;
-  };
-  EXPECT_THAT(numbered("/output/watch", {101, 100}), HasSubstr("/output/watch/0: found 101"));
-  EXPECT_THAT(numbered("/interfaces/0/against/nodes", {100}),
-              HasSubstr("/interfaces/0/against/nodes/0: found 100"));
-  EXPECT_THAT(numbered("/interfaces/0/parameters", {{"restitution", {{"per_node", {0.5}}}}}),
-              HasSubstr("/interfaces/0/parameters/restitution/per_node: found [0.5]"));
-  refusal(ball(0.5), "--levels 1");
-  refusal(ball(0.5), "--factor 1");
-  refusal(ball(0.5), "--refine space");
-  const auto folder = fresh_folder();
-  std::ofstream(folder / "file") << "not a folder";
-  EXPECT_THAT(run_program("converge " + scene_files::named("two_bars.json").string() + " --out " +
-                          (folder / "file").string()),
-              Exits(2, HasSubstr("expected a folder")));
-}
-
 }  // namespace
 }  // namespace ilaw::host::testing

@@ -72,34 +72,6 @@ TEST(BlockImpact, MeetsTheFloorAndTheBall) {
   EXPECT_EQ(integrator.tally().unconverged, 0);
 }
 
-// Weights sum to one, so that what one body gains the other loses.
-TEST(NodeToFacet, KeepsMomentum) {
-  Scene scene = scene_of(until_at_cfl(
-      0.4, 0.5,
-      scene_of_blocks(
-          {block("a", {0, 0, 0}, {1, 1, 0.5}, {3, 3, 2}, elastic(100, 0.2, 1)),
-           block("b", {0.13, 0.21, 0.52}, {0.7, 0.6, 0.5}, {4, 2, 2}, elastic(50, 0.3, 1), {0.1, 0, -1})},
-          {law_between("b.z_min", {{"surface", "a.z_max"}}, "coulomb", {{"friction", 0.4}})})));
-  Integrator integrator = integrator_of(scene);
-  const auto momentum = [&] {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    const Dofs p = scene.model->mass().cwiseProduct(integrator.velocity());
-    for (Eigen::Index i = 0; i < p.size(); i += 3) sum += p.segment<3>(i);
-    return sum;
-  };
-  const Eigen::Vector3d before = momentum();
-  double touched = 0.0;
-  while (integrator.steps() < scene.steps) {
-    integrator.step();
-    touched += integrator.interface_impulse().cwiseAbs().sum();
-  }
-  EXPECT_GT(touched, 0.1);
-  EXPECT_LE((momentum() - before).norm(), 1e-13 * before.norm());
-  EXPECT_LE(integrator.energy().balance_error, 1e-12);
-  // A node sinks in by what it travels within the step that finds it closed.
-  EXPECT_LE(integrator.tally().penetration_max, 1.5 * scene.dt);
-}
-
 // The mesh below moves under a point along flat facets: the gap must not notice where one ends and the next
 // begins.
 TEST(NodeToFacet, GapIsContinuousAcrossFacetsAndOpenBeyondTheBorder) {

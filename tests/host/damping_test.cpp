@@ -260,12 +260,6 @@ TEST(BulkViscosity, LetsABodyTurn) {
   EXPECT_LT(impulse.cwiseAbs().maxCoeff(), 1e-14);
 }
 
-TEST(BulkViscosity, NeedsElements) {
-  json source = resting_point("contact", {}, 1e-2);
-  source["loads"].push_back({{"type", "bulk_viscosity"}});
-  EXPECT_EQ(refusal_of(source), "/loads/1: this model has no elements whose volume could change");
-}
-
 TEST(BulkViscosity, ClosesTheBalanceOfImpacts) {
   for (const char* name : {"bar_on_wall", "block_impact"}) {
     json source = shipped(name);

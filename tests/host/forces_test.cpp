@@ -300,30 +300,5 @@ TEST(Forces, AndEventsSurviveACheckpointWithTheSameBytes) {
   EXPECT_EQ(summary["forces"], json_of(whole / "summary.json")["forces"]);
 }
 
-TEST(Forces, OfWhatIsNotThereAreRefusedByPointer) {
-  const auto refusal = [](const std::string& pointer, const json& value) -> std::string {
-    json scene = shaken_block();
-    scene[json::json_pointer(pointer)] = value;
-    try {
-      scene_of(scene);
-    } catch (const SceneError& error) {
-      return error.what();
-    }
-    return "not refused";
-  };
-  EXPECT_THAT(refusal("/output/forces/0", "flor"),
-              StartsWith("/output/forces/0: found \"flor\", expected the name of"));
-  EXPECT_THAT(refusal("/output/forces/0", {{"of", "b.z_min"}}),
-              StartsWith("/output/forces/0/of: found \"b.z_min\""));
-  EXPECT_THAT(refusal("/output/forces/1", "floor"), StartsWith("/output/forces/1: found 'floor' twice"));
-  EXPECT_THAT(refusal("/output/forces/1", {{"of", "grip"}, {"about", {0, 0}}}),
-              StartsWith("/output/forces/1/about"));
-  EXPECT_THAT(refusal("/loads/1/name", "grip"), StartsWith("/loads/1/name: found 'grip' twice"));
-  const json spring = json::parse(R"([{"name": "grip", "nodes": [0], "anchor": [0, 0, 0], "stiffness": 1}])");
-  EXPECT_THAT(refusal("/springs", spring),
-              StartsWith("/springs/0/name: found 'grip' twice, expected a name that no"));
-  EXPECT_THAT(refusal("/interfaces/0/name", "grip"), StartsWith("/loads/0/name: found 'grip' twice"));
-}
-
 }  // namespace
 }  // namespace ilaw::host::testing

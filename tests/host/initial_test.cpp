@@ -64,25 +64,5 @@ TEST(Initial, StretchStoresWhatAnElasticBodyDoes) {
             1e-15);
 }
 
-TEST(Initial, IsRefusedWithPointerFoundAndAllowed) {
-  const auto with = [](const char* initial) {
-    json scene = block("linear", 0.0);
-    scene["initial"] = json::parse(initial);
-    return refusal_of(scene);
-  };
-  EXPECT_EQ(with(R"([{"nodes": "b"}])"),
-            "/initial/0: found {\"nodes\":\"b\"}, expected 'displacement', 'gradient' or both");
-  EXPECT_EQ(with(R"([{"displacement": [1, 0]}])"),
-            "/initial/0/displacement: found 2 components, expected 3, the dimension of the model");
-  EXPECT_EQ(with(R"([{"gradient": [[1, 0, 0]]}])"),
-            "/initial/0/gradient: found 1 rows, expected 3, the dimension of the model");
-  EXPECT_EQ(
-      with(R"([{"displacment": [1, 0, 0]}])"),
-      "/initial/0/displacment: unknown key, expected one of: displacement, gradient, nodes (did you mean "
-      "'displacement'?)");
-  EXPECT_EQ(with(R"([{"gradient": [[-1, 0, 0], [0, 0, 0], [0, 0, 0]]}])"),
-            "/initial: element 0 is turned inside out at the start, expected smaller displacements");
-}
-
 }  // namespace
 }  // namespace ilaw::host::testing

@@ -54,22 +54,6 @@ TEST(Tangent, TellsWhichWayFrictionIsLarger) {
   }
 }
 
-TEST(Tangent, IsRefusedWhereItCannotBe) {
-  json scene =
-      points_on_plane({point({0, 0, 0}, {1, 0, 0})},
-                      {{"law", "coulomb"}, {"parameters", {{"friction", 0.1}, {"friction_2", 0.4}}}});
-  EXPECT_THAT(refusal_of(scene), HasSubstr("tangent"));
-  scene["interfaces"][0]["tangent"] = {0.0, 0.0, 1.0};
-  EXPECT_EQ(refusal_of(scene),
-            "/interfaces/0/tangent: found [0.0,0.0,1.0], expected a direction across the normal");
-  scene["interfaces"][0]["tangent"] = {0.0, 0.0, 0.0};
-  EXPECT_EQ(refusal_of(scene), "/interfaces/0/tangent: found a vector of length 0, expected a direction");
-  scene["interfaces"][0]["tangent"] = {1.0, 0.0, 0.0};
-  scene["interfaces"][0]["obstacle"] = {{"type", "sphere"}, {"center", {0.0, 0.0, -1.0}}, {"radius", 1.0}};
-  EXPECT_EQ(refusal_of(scene),
-            "/interfaces/0/tangent: found a tangent, expected none: the normal of the counterpart turns");
-}
-
 // ---- birth and death ------------------------------------------------------------------------------------
 
 // A point rests on its plane until the plane dies, and then falls freely; where the plane is born later the
@@ -235,17 +219,6 @@ TEST(PerNode, IsJudgedNodeByNode) {
             "not refused");
 }
 
-// The place is that in the list, the node that of the model.
-TEST(PerNode, IsRefusedWithThePlaceOfTheValueAndTheNode) {
-  EXPECT_EQ(refusal_of(points_on_plane(
-                {point({0, 0, 0}, {0, 0, 0}), point({1, 0, 0}, {0, 0, 0}), point({2, 0, 0}, {0, 0, 0})},
-                {{"law", "coulomb"},
-                 {"nodes", {2, 0}},
-                 {"parameters", {{"friction", {{"per_node", {0.1, -0.5}}}}}}})),
-            "/interfaces/0/parameters/friction/per_node/1: law 'coulomb': parameter 'friction' = -0.5 is not "
-            "allowed: expected a number in [0, inf] (node 0)");
-}
-
 // Reading costs the same for each parameter and node.
 TEST(PerNode, TakesNoLongerTogetherThanOneByOne) {
   constexpr int count = 20000;
@@ -264,33 +237,6 @@ TEST(PerNode, TakesNoLongerTogetherThanOneByOne) {
   const auto start = std::chrono::steady_clock::now();
   EXPECT_EQ(refusal_of(scene), "not refused");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
-}
-
-TEST(VaryingParameters, AreRefusedWhereTheyCannotBe) {
-  const auto refusal = [](const json& friction) {
-    return refusal_of(points_on_plane({point({0, 0, 0}, {1, 0, 0})},
-                                      {{"law", "coulomb"}, {"parameters", {{"friction", friction}}}}));
-  };
-  EXPECT_EQ(refusal({{"per_node", {0.1, 0.2}}}),
-            "/interfaces/0/parameters/friction/per_node: found 2 values, expected 1, one per node of the "
-            "interface");
-  EXPECT_EQ(refusal({{"table", {{0.0, 0.1, 0.2}}}}),
-            "/interfaces/0/parameters/friction/table/0: found [0.0,0.1,0.2], expected [time, value]");
-  EXPECT_EQ(refusal({{"table", {{0.0, "much"}}}}),
-            "/interfaces/0/parameters/friction/table/0/1: found \"much\", expected a number or \"inf\"");
-  EXPECT_THAT(refusal({{"tabel", {{0.0, 1.0}}}}),
-              HasSubstr("expected a number, \"inf\", a choice, {\"table\""));
-  for (const json& wrong : {json{{"table", {{0.0, -0.1}}}}, json{{"per_node", {-0.1}}},
-                            json{{"table", {{1.0, 0.1}, {0.5, 0.1}}}}, json{{"table", json::array()}}}) {
-    const std::string message = refusal(wrong);
-    EXPECT_THAT(message, StartsWith("/interfaces/0/parameters"));
-    EXPECT_THAT(message, HasSubstr("friction"));
-  }
-  EXPECT_THAT(refusal({{"per_node", {-0.1}}}), HasSubstr("'friction' = -0.1"));
-  const std::string message = refusal_of(points_on_plane(
-      {point({0, 0, 0}, {1, 0, 0})},
-      {{"law", "coulomb"}, {"parameters", {{"friction", 0.1}, {"activation", {{"table", {{0.0, 1.0}}}}}}}}));
-  EXPECT_THAT(message, HasSubstr("activation"));
 }
 
 }  // namespace

@@ -143,20 +143,5 @@ TEST(Pressure, WorksOnTheVolume) {
   EXPECT_GT(order(steps, errors), 1.8);
 }
 
-TEST(Pressure, IsRefusedWithPointerFoundAndAllowed) {
-  const auto with = [](const char* load) {
-    json scene = rubber_block("linear");
-    scene["loads"] = json::array({json::parse(load)});
-    return refusal_of(scene);
-  };
-  EXPECT_THAT(with(R"({"type": "pressure", "surface": "b", "history": [[0, 1]]})"),
-              StartsWith("/loads/0/surface: found"
-                         " \"b\", expected one of b.x_max"));
-  EXPECT_THAT(with(R"({"type": "pressure", "surface": "b.x_mix", "history": [[0, 1]]})"),
-              HasSubstr("(did you mean"));
-  EXPECT_THAT(with(R"({"type": "pressure", "nodes": "b.x_min", "history": [[0, 1]]})"),
-              StartsWith("/loads/0: key 'surface' is missing"));
-}
-
 }  // namespace
 }  // namespace ilaw::host::testing

@@ -136,27 +136,6 @@ TEST(Program, ChecksALibraryByAProgramOfItsOwn) {
   EXPECT_EQ(run_command(program + " --rules >/dev/full").code, 1);
 }
 
-// A misspelled name is reported, rather than what is missing because of it.
-TEST(Program, NamesWhatItDoesNotKnow) {
-  const auto first_line = [](const std::string& arguments) {
-    const std::string output = run_program(arguments).output;
-    return output.substr(0, output.find('\n'));
-  };
-  EXPECT_EQ(
-      first_line("rnu"),
-      "ilaw: found 'rnu', expected one of run, plot, view, table, converge, study, stress, list, describe, check, "
-      "bench, --help, --version");
-  EXPECT_EQ(
-      first_line("run " + ball + " --outt here"),
-      "ilaw: found '--outt', expected one of --help, --out, --checkpoint-every, --resume, --threads, --json-lines, --audit, "
-      "--tolerance, --set");
-  EXPECT_EQ(first_line("run " + ball), "ilaw: --out is required");
-  EXPECT_EQ(first_line("run " + ball + " --out here --threads 0"),
-            "ilaw: --threads: Value 0 not in range 1 to 1024");
-  EXPECT_EQ(first_line("run " + ball + " --out here --checkpoint-every 0").size(),
-            std::string("ilaw: --checkpoint-every: Value 0 not in range 1 to 1000000000000000").size());
-}
-
 // The law is not blamed for the velocities that it is given.
 TEST(Program, FailsWithCodeOneWhereTheMotionOverflows) {
   const auto folder = fresh_folder();

@@ -219,31 +219,6 @@ TEST(Divergence, NamesTheElementAndTheCure) {
                          "of the undeformed body, is turned inside out; half the step is \"cfl\": 0.45"))));
 }
 
-TEST(Refusals, NameSeveralMistakesAndWhatIsMeant) {
-  const auto said = [&](const json& scene) { return run_scene(scene).output; };
-  json scene = sliding();
-  scene["output"]["evry"] = 1;
-  scene["model"]["dimensions"] = 2;
-  scene["time"]["dt"] = -1;
-  scene["tim"] = 1;
-  const std::string refusal = said(scene);
-  for (const char* part : {"(did you mean 'time'?)", "(did you mean 'every'?)", "(did you mean 'dimension'?)",
-                           "/time/dt: found -1"})
-    EXPECT_THAT(refusal, HasSubstr(part)) << part;
-  scene = sliding();
-  scene["interfaces"][0]["law"] = "coulom";
-  EXPECT_THAT(said(scene), HasSubstr("(did you mean 'coulomb'?)"));
-  scene = sliding();
-  scene["interfaces"][0]["parameters"] = {{"fricton", 0.5}};
-  EXPECT_THAT(said(scene), HasSubstr("(did you mean 'friction'?)"));
-  scene = sliding();
-  scene["output"]["watch"] = "floor";
-  scene["loads"][0]["acceleration"] = -10;
-  for (const char* part : {"/output/watch: found \"floor\", expected array\n",
-                           "/loads/0/acceleration: found -10, expected array of 1 to 3 numbers\n"})
-    EXPECT_THAT(said(scene), HasSubstr(part)) << part;
-}
-
 json block_on_plane() {
   return json::parse(R"({
     "model": {"type": "blocks", "blocks": [{"name": "b", "size": [0.1, 0.1, 0.1], "elements": [2, 2, 2],

@@ -68,41 +68,6 @@ TEST(Watch, TakesABox) {
   EXPECT_EQ(scene_of(scene).output.watch, (std::vector<int>{0, 1}));
 }
 
-TEST(NodesOfAScene, AreRefusedWithPointerFoundAndAllowed) {
-  const auto with = [](const char* pointer, const char* value) {
-    json scene = cube();
-    scene["sets"]["tip"] = {0, 1};
-    scene[json::json_pointer(pointer)] = json::parse(value);
-    return refusal_of(scene);
-  };
-  EXPECT_EQ(with("/sets/a b", "[0]"),
-            "/sets/a b: found the name 'a b', expected a letter, then letters, digits and _");
-  EXPECT_EQ(with("/sets/cube", "[0]"),
-            "/sets/cube: found 'cube', which the model has, expected a name of its own");
-  EXPECT_THAT(with("/sets/tips", "\"tip\""),
-              StartsWith("/sets/tips: found \"tip\", expected one of all, cube, "));
-  EXPECT_THAT(with("/sets/all", "[0]"), StartsWith("/sets/all: found 'all', which the model has"));
-  EXPECT_EQ(with("/sets/far", "[75]"), "/sets/far/0: found node 75, expected 0 to 74");
-  EXPECT_EQ(
-      with("/sets/far", "7"),
-      "/sets/far: found 7, expected string or array of 1 or more integers or object with near or object "
-      "with box");
-  EXPECT_THAT(with("/sets/far", R"({"bx": [[0, 0, 0], [1, 1, 1]]})"),
-              StartsWith("/sets/far/bx: unknown key"));
-  EXPECT_THAT(with("/loads", R"([{"type": "gravity", "nodes": "tib", "acceleration": [0, 0, 1]}])"),
-              HasSubstr("(did you mean 'tip'?)"));
-  EXPECT_EQ(with("/output/watch", R"([{"near": [[0, 0, 0], [0.01, 0, 0]]}])"),
-            "/output/watch/0/near/1: found node 0 twice, expected each node once");
-  EXPECT_EQ(with("/output/watch", R"([{"near": [0, [0.01, 0, 0]]}])"),
-            "/output/watch/0/near: found [0,[0.01,0,0]], expected a place, or a list of places");
-  EXPECT_EQ(with("/output/watch", R"([{"near": [[0, 0, "x"]]}])"),
-            "/output/watch/0/near/0/2: found \"x\", expected number");
-  EXPECT_EQ(with("/output/watch", R"([{"neer": [0, 0, 0]}])"),
-            "/output/watch/0/neer: unknown key, expected one of: box, near, of (did you mean 'near'?)");
-  EXPECT_EQ(with("/output/watch", R"([{"near": [[0, 0, 0], [0.01, 0]]}])"),
-            "/output/watch/0/near/1: found 2 components, expected 3, the dimension of the model");
-}
-
 // The scene that docs/scenes.md begins with, and what the page says of it.
 TEST(ScenesPage, BeginsWithASceneThatDoesWhatItSays) {
   std::ostringstream page;

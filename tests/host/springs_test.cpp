@@ -216,33 +216,5 @@ TEST(SpringsCriticalStep, CountsTheBody) {
   EXPECT_LE(integrator.energy().scale, start * (1.0 + 1e-12));
 }
 
-TEST(Springs, AreRefusedWithPointerFoundAndAllowed) {
-  const auto with = [](const char* spring) {
-    json scene = two_masses(1.0, 0.0);
-    scene["time"]["dt"] = 0.1;
-    scene["springs"] = json::array({json::parse(spring)});
-    return refusal_of(scene);
-  };
-  EXPECT_EQ(with(R"({"nodes": [0], "to": [0], "stiffness": 1})"),
-            "/springs/0/to: found node 0 at both ends, expected another node");
-  EXPECT_EQ(with(R"({"nodes": [0, 1], "to": [0], "stiffness": 1})"),
-            "/springs/0/to: found 1 nodes, expected one for each of the 2 nodes of 'nodes'");
-  EXPECT_EQ(with(R"({"nodes": [0], "to": [1, 0], "stiffness": 1})"),
-            "/springs/0/to: found 2 nodes, expected one for each of the 1 nodes of 'nodes'");
-  EXPECT_THAT(with(R"({"nodes": [0], "stiffness": 1})"),
-              StartsWith("/springs/0: found neither, expected one of 'to'"));
-  EXPECT_THAT(with(R"({"nodes": [0], "to": [1]})"),
-              StartsWith("/springs/0: found {\"nodes\":[0],\"to\":[1]}, expected "
-                         "'stiffness', 'damping' or both above 0"));
-  EXPECT_THAT(
-      with(R"({"nodes": [0], "to": [1], "stiffnes": 1})"),
-      StartsWith("/springs/0/stiffnes: unknown key, expected one of: anchor, damping, length, name, nodes, "
-                 "stiffness, to (did you mean 'stiffness'?)"));
-  EXPECT_EQ(with(R"({"nodes": [0], "to": [1], "stiffness": -1})"),
-            "/springs/0/stiffness: found -1, expected number >= 0");
-  EXPECT_EQ(with(R"({"nodes": [0], "anchor": [0, 1], "stiffness": 1})"),
-            "/springs/0/anchor: found 2 components, expected 1, the dimension of the model");
-}
-
 }  // namespace
 }  // namespace ilaw::host::testing

@@ -297,46 +297,5 @@ TEST(Study, EndsWithTheSceneThatFails) {
   EXPECT_FALSE(fs::exists(folder / "out/third"));
 }
 
-TEST(Study, RefusesWhatItCannotCompare) {
-  const auto refusal = [](const json& scene, const std::string& options, const std::string& said) {
-    const Result study = study_of(scene, options);
-    EXPECT_THAT(study.outcome, Exits(2, HasSubstr(said)));
-    EXPECT_FALSE(fs::exists(study.folder));
-  };
-  const json good = ball();
-  json scene = good;
-  scene["study"]["lvels"] = 3;
-  refusal(scene, "", "/study/lvels: unknown key, expected one of");
-  scene = good;
-  scene["study"]["laws"][2]["stiffness"] = 3;
-  refusal(scene, "", "/study/laws/2/stiffness: unknown key");
-  scene = good;
-  scene["study"]["laws"][1] = scene["study"]["laws"][0];
-  refusal(scene, "", "/study/laws/1: found 'contact predictive' twice");
-  scene = good;
-  scene["output"].erase("watch");
-  refusal(scene, "", "/output/watch: found no node");
-  refusal(good, "--refine mesh", "/study/refine: found \"mesh\"");
-  refusal(good, "--law glue", "with law 'glue': /interfaces/0/law");
-  refusal(good, "--law 'contact:{\"restitution\": 2}'",
-          "with law 'contact restitution 2': /interfaces/0/parameters/restitution");
-  refusal(good, "--law 'contact:{\"restitution\"}'", "--law contact:{\"restitution\"}: not valid JSON");
-  refusal(good, "--law 'contact:3'", "/study/laws/0/parameters: found 3, expected object");
-  refusal(good, "--law '{\"scaled\": 1}'", "/study/laws/0/scaled: found 1, expected boolean");
-  refusal(good, "--law Contact", "/study/laws/0/law: found \"Contact\"");
-  const auto folder = fresh_folder();
-  for (const char* name : {"a", "b"}) {
-    fs::create_directories(folder / name);
-    std::ofstream(folder / name / "ball.json") << good.dump();
-  }
-  const Outcome alike =
-      run_program("study " + (folder / "a/ball.json").string() + " " + (folder / "b/ball.json").string() +
-                  " --out " + (folder / "out").string());
-  EXPECT_EQ(alike.code, 2);
-  EXPECT_THAT(alike.output, HasSubstr("found two scenes called 'ball'"));
-  for (const char* options : {"--levels 0", "--factor 1", "--refine space", "--repetitions 0"})
-    refusal(good, options, "--");
-}
-
 }  // namespace
 }  // namespace ilaw::host::testing

@@ -476,19 +476,6 @@ TEST(Thermal, RefusesTwoTemperaturesOfANode) {
   EXPECT_NE(refusal_of(scene).find("/interfaces/0/parameters/temperature: found a value"), std::string::npos);
 }
 
-// Nodes of an edge belong to two sides.
-TEST(Thermal, RefusesTwoLoadsThatHoldANode) {
-  json scene = scene_with({column({}, "bar", 0)}, 0.001, 1.0);
-  scene["loads"] = {held("bar.x_min", 300), held("bar.z_max", 400)};
-  EXPECT_EQ(refusal_of(scene),
-            "/loads/1: found node 20 held at [[0,400.0]], which /loads/0 holds at [[0,300.0]], expected one "
-            "'history' for each node");
-  scene["loads"][1] = held("bar.x_max", 400);
-  EXPECT_EQ(refusal_of(scene), "not refused");
-  scene["loads"][1] = held("bar.z_max", 300);
-  EXPECT_EQ(refusal_of(scene), "not refused");
-}
-
 // A field is for interfaces whose bodies have no temperature.
 TEST(Thermal, TakesFieldsInterfaceByInterface) {
   json scene = sliding_point(0.01, 0.5);
@@ -520,21 +507,6 @@ TEST(Thermal, WarnsOfATemperatureThatNoLawReads) {
   scene["interfaces"][0]["law"] = "conductance";
   scene["interfaces"][0]["parameters"] = {{"conductance", 1}};
   EXPECT_TRUE(scene_of(scene).warnings.empty());
-}
-
-TEST(Thermal, RefusesContactWithABodyWithoutTemperature) {
-  const Bar bar;
-  const json law = {{"law", "coulomb"}, {"parameters", {{"friction", 0.3}}}};
-  json scene = two_columns(bar, bar, 0.001, 1.0, law);
-  scene["model"]["blocks"][0].erase("thermal");
-  EXPECT_NE(refusal_of(scene).find("/interfaces/0/against: found node 20, which has no temperature"),
-            std::string::npos)
-      << refusal_of(scene);
-  scene = sliding_point(0.01, 0.5);
-  scene["model"]["points"][0].erase("thermal");
-  scene["interfaces"][0]["obstacle"]["temperature"] = 300;
-  EXPECT_NE(refusal_of(scene).find("/interfaces/0/nodes: found node 0, which has no temperature"),
-            std::string::npos);
 }
 
 }  // namespace

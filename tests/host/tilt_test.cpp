@@ -183,20 +183,5 @@ TEST(Tilt, BlockSlidesAtTheAngleOfItsFriction) {
   }
 }
 
-TEST(Tilt, RefusesWhatCannotTilt) {
-  json source = on_plane(2, 0.0, 0.3, 0.01);
-  json& obstacle = source["interfaces"][0]["obstacle"];
-  const std::string pointer = "/interfaces/0/obstacle";
-  obstacle["tilt"]["axis"] = {0, 0, 1};
-  EXPECT_EQ(refusal_of(source),
-            pointer + "/tilt/axis: found [0,0,1], expected none: a plane in 2D tilts in its plane");
-  obstacle["tilt"].erase("axis");
-  obstacle["rate"] = 1.0;
-  EXPECT_EQ(refusal_of(source), pointer + ": found both 'tilt' and 'rate', expected one of them");
-  source = on_plane(3, 0.0, 0.3, 0.01);
-  source["interfaces"][0]["obstacle"]["tilt"].erase("axis");
-  EXPECT_EQ(refusal_of(source), pointer + "/tilt: key 'axis' is missing, about which the plane tilts");
-}
-
 }  // namespace
 }  // namespace ilaw::host::testing

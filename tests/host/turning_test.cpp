@@ -260,34 +260,5 @@ TEST(TurningObstacle, LeavesNoTraceOfARefusedStep) {
   }
 }
 
-TEST(TurningObstacle, IsRefusedWithPointerFoundAndAllowed) {
-  const auto with = [](const json& change, int dimension = 3) {
-    json source = dropped(wheel(dimension == 2 ? "disc" : "sphere", 1.0), dimension, 0.3, 0.5);
-    source["time"]["dt"] = 0.01;
-    source["interfaces"][0]["obstacle"].merge_patch(change);
-    return refusal_of(source);
-  };
-  const std::string obstacle = "/interfaces/0/obstacle";
-  EXPECT_EQ(with(json::object()), "not refused");
-  EXPECT_EQ(with({{"angles", {{0, 1}}}}),
-            obstacle + ": found both 'rate' and 'angles', expected at most one of them");
-  EXPECT_EQ(with({{"axis", nullptr}}), obstacle + ": key 'axis' is missing, about which the sphere turns");
-  EXPECT_EQ(with({{"rate", nullptr}}),
-            obstacle + "/axis: found [0,0,-2], expected 'rate' or 'angles' beside it");
-  EXPECT_EQ(with({{"axis", {0, 0, 1}}}, 2),
-            obstacle + "/axis: found [0,0,1], expected none: discs turn in their plane");
-  EXPECT_THAT(with({{"rat", 1}}),
-              StartsWith(obstacle + "/rat: unknown key, expected one of: angles, axis, "));
-  EXPECT_THAT(with({{"rat", 1}}), HasSubstr("(did you mean 'rate'?)"));
-  EXPECT_EQ(with({{"rate", "fast"}}), obstacle + "/rate: found \"fast\", expected number");
-  EXPECT_EQ(with({{"rate", nullptr}, {"angles", {{0, 1}, {0, 2}}}}),
-            obstacle + "/angles/1: found time 0, expected one after 0");
-  json line =
-      json::parse(R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [1]}]},
-    "time": {"dt": 0.1, "end": 1}, "interfaces": [{"law": "contact", "nodes": "all",
-      "obstacle": {"type": "sphere", "center": [0], "radius": 0.5, "rate": 1}}]})");
-  EXPECT_THROW(scene_of(line), SceneError);
-}
-
 }  // namespace
 }  // namespace ilaw::host::testing

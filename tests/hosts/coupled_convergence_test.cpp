@@ -118,18 +118,6 @@ ilaw::interface friction(bool rotate, double mu) {
   return create("coulomb", rotate ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR, {{"friction", mu}});
 }
 
-TEST(CoupledConvergence, HoldsAColumnOf250) {
-  Assembly column(friction(false, 0.3), false);
-  for (int i = 0; i < 250; ++i) {
-    column.add_body(1.0, 0.0, {0.0, 0.0, -1e-2});
-    column.add(i, i - 1);
-  }
-  const ilaw_coupled_report report = column.solve(1e-12, 2000);
-  EXPECT_LE(report.residual, 1e-12);
-  EXPECT_LE(column.largest_velocity(), 1e-8);
-  EXPECT_NEAR(column.impulse[2], 2.5, 1e-8);
-}
-
 // Four legs: the weight on each is not unique, their sum is.
 TEST(CoupledConvergence, HoldsATableOnFourLegs) {
   Assembly table(friction(true, 0.5), true);

@@ -102,67 +102,6 @@ TEST(CoupledRolling, FirstIterationHasTheBitsOfEvaluate) {
   }
 }
 
-// While it rolls 7/5 a = -rho g/R. In steps the position is a sum of the velocities after them: h v0/2 less.
-TEST(CoupledRolling, BallRollsOut) {
-  constexpr double rho = 0.002, v0 = 1.0, closed = 1.4 * v0 * v0 * radius / (2.0 * rho * gravity);
-  static_assert(closed > 1.7838939 && closed < 1.7838941);
-  for (const double h : steps) {
-    Grains one = ball(resistance(0.5, rho, 0.001), h);
-    one.grains[0].v = {v0, 0.0, 0.0}, one.grains[0].w = {0.0, v0 / radius, 0.0};
-    const double at_start = one.kinetic();
-    one.run(6.0);
-    const Grain& grain = one.grains[0];
-    EXPECT_NEAR(grain.x[0], closed - 0.5 * h * v0, 0.2 * h * h) << "h " << h;
-    EXPECT_LE(length(grain.v) + radius * length(grain.w), 1e-14);
-    EXPECT_NEAR(one.dissipated, at_start, 1e-12 * at_start);
-    EXPECT_NEAR(one.work, -at_start, 1e-12 * at_start);
-  }
-}
-
-// Friction turns 2/7 of the momentum into spin (Euler 1758).
-TEST(CoupledRolling, BallSlidesIntoRolling) {
-  for (const double h : steps) {
-    Grains one = ball(resistance(0.3, 0.0, 0.0), h);
-    one.grains[0].v = {1.0, 0.0, 0.0};
-    one.run(1.0);
-    EXPECT_NEAR(one.grains[0].v[0], 5.0 / 7.0, 1e-12) << "h " << h;
-    EXPECT_NEAR(radius * one.grains[0].w[1], 5.0 / 7.0, 1e-12) << "h " << h;
-  }
-}
-
-// rho M g cos holds R M g sin; above, 7/5 a = g (sin - rho/R cos).
-TEST(CoupledRolling, BallStaysOnASlopeBelowTheLimit) {
-  constexpr double rho = 0.002;
-  const double limit = std::atan(rho / radius);
-  for (const double h : steps) {
-    Grains below = ball(resistance(0.5, rho, 0.0), h, 0.98 * limit);
-    Grains above = ball(resistance(0.5, rho, 0.0), h, 1.02 * limit);
-    below.run(1.0);
-    above.run(1.0);
-    EXPECT_NEAR(below.grains[0].x[0], 0.0, 1e-16) << "h " << h;
-    const double a = 1.02 * limit, time = h * static_cast<double>(std::lround(1.0 / h));
-    const double expected = (gravity / 1.4) * (std::sin(a) - std::cos(a) * rho / radius);
-    EXPECT_NEAR(above.grains[0].v[0], expected * time, 1e-11) << "h " << h;
-  }
-}
-
-// I dw/dt = -tau M g: it stops after I w0/(tau M g).
-TEST(CoupledRolling, TopStopsAtItsTime) {
-  constexpr double tau = 0.001, w0 = 30.0, closed = inertia * w0 / (tau * mass * gravity);
-  for (const double h : steps) {
-    Grains one = ball(resistance(0.5, 0.002, tau), h);
-    one.grains[0].w = {0.0, 0.0, w0};
-    int count = 0;
-    for (; one.grains[0].w[2] > 1e-12 && count < 100000; ++count) {
-      one.step();
-      ASSERT_NEAR(one.grains[0].w[2], std::max(0.0, w0 * (1.0 - (count + 1) * h / closed)), 1e-10)
-          << "h " << h;
-    }
-    EXPECT_NEAR(count * h, closed, h);
-    EXPECT_LE(length(one.grains[0].v), 1e-15);
-  }
-}
-
 // A plate that spins about the normal takes the ball with it: I dw/dt = tau M g up to the spin of the plate.
 TEST(CoupledRolling, PlateThatSpinsTurnsTheBall) {
   constexpr double tau = 0.001, plate = 20.0, rate = tau * mass * gravity / inertia;

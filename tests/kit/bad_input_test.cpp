@@ -1,135 +1,13 @@
-// Bad input at a node: nothing happens to it, everything happens to the others, and the report says so.
+// What is bad input, and what is ordinary. That nothing happens at a bad node, and everything at the others,
+// is for `ilaw check` (bad-input-*).
 #include "batch_runner.hpp"
 #include "kit_probe.hpp"
 
 #include "support/law_cases.hpp"
 #include "support/small_batch.hpp"
 
-#include <functional>
-
 namespace ilaw::testing {
 namespace {
-
-struct Bad {
-  const char* name;
-  std::function<void(Nodes&)> spoil;  // node 70
-  const char* reason;
-  std::uint32_t input = 0;  // the law must read this to notice; 0: all do
-
-  friend void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
-};
-
-class BadInput : public ::testing::TestWithParam<std::tuple<LawCase, Bad>> {};
-
-TEST_P(BadInput, IsRefusedAtItsNodeOnly) {
-  const auto& [served, spoilt] = GetParam();
-  const SetupBuilder setup(served.parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL);
-  const ilaw::interface law = make_law(served.law, setup);
-  const bool reads = spoilt.input == 0 || (law.info().inputs & spoilt.input);
-  Nodes nodes(270);
-  nodes.gap[70] = -1e-3;
-  const Results good = run(law, nodes, {}, true, 1);
-  spoilt.spoil(nodes);
-  nodes.sound = false;
-  for (const Layout& layout : {Layout{}, Layout{.soa = true}}) {
-    const Results bad = run(law, nodes, layout, true, 1);
-    if (!reads) {
-      EXPECT_EQ(bad.code, ILAW_OK);
-      EXPECT_EQ(bad.impulse, good.impulse);
-      EXPECT_EQ(bad.state, good.state);
-      continue;
-    }
-    EXPECT_EQ(bad.code, ILAW_BAD_NODES);
-    EXPECT_EQ(bad.report.bad_count, 1);
-    EXPECT_EQ(bad.report.first_bad_node, 70);
-    EXPECT_STREQ(bad.report.reason, spoilt.reason);
-    for (std::size_t i = 0; i < 270; ++i) {
-      EXPECT_EQ(bad.status[i], i == 70 ? int{ILAW_BAD_INPUT} : int{good.status[i]}) << "i " << i;
-      for (std::size_t c = 0; c < 3; ++c) {
-        EXPECT_EQ(bad.impulse[3 * i + c], i == 70 ? 0.0 : good.impulse[3 * i + c])
-            << "i " << i << ", c " << c;
-        const double velocity = bad.velocity[3 * i + c],
-                     expected = i == 70 ? nodes.v_free[3 * i + c] : good.velocity[3 * i + c];
-        EXPECT_TRUE(velocity == expected || (std::isnan(velocity) && std::isnan(expected)))
-            << "i " << i << ", c " << c;
-      }
-      for (std::size_t c = 0; c < 4; ++c)
-        EXPECT_EQ(bad.energy[4 * i + c], i == 70 ? 0.0 : good.energy[4 * i + c]) << "i " << i << ", c " << c;
-    }
-  }
-}
-
-const std::vector<Bad> bad_inputs = {
-    {"nan_velocity", [](Nodes& n) { n.v_free[211] = nan_value; }, "v_free is not finite"},
-    {"infinite_velocity", [](Nodes& n) { n.v_free[210] = inf_value; }, "v_free is not finite"},
-    {"nan_previous", [](Nodes& n) { n.v_previous[212] = nan_value; }, "v_previous is not finite",
-     ILAW_INPUT_V_PREVIOUS},
-    {"zero_delassus", [](Nodes& n) { n.delassus[70] = 0.0; }, "H is not finite and positive definite"},
-    {"negative_delassus", [](Nodes& n) { n.delassus[70] = -1.0; }, "H is not finite and positive definite"},
-    {"infinite_delassus", [](Nodes& n) { n.delassus[70] = inf_value; },
-     "H is not finite and positive definite"},
-    {"subnormal_delassus", [](Nodes& n) { n.delassus[70] = 1e-310; },
-     "H is not finite and positive definite"},
-    {"nan_gap", [](Nodes& n) { n.gap[70] = nan_value; }, "the gap is not finite", ILAW_INPUT_GAP},
-    {"infinite_gap", [](Nodes& n) { n.gap[70] = -inf_value; }, "the gap is not finite", ILAW_INPUT_GAP},
-    {"negative_area", [](Nodes& n) { n.area[70] = -1.0; }, "the area is not a finite number >= 0",
-     ILAW_INPUT_AREA},
-    {"nan_area", [](Nodes& n) { n.area[70] = nan_value; }, "the area is not a finite number >= 0",
-     ILAW_INPUT_AREA},
-    {"long_normal",
-     [](Nodes& n) {
-       n.normal[210] *= 3.0;
-       n.normal[211] += 1.0;
-     },
-     "the normal is not a unit vector"},
-    {"nan_normal", [](Nodes& n) { n.normal[210] = nan_value; }, "the normal is not a unit vector"}};
-
-std::string name_of(const ::testing::TestParamInfo<std::tuple<LawCase, Bad>>& drawn) {
-  return std::get<0>(drawn.param).name + "_" + std::get<1>(drawn.param).name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Laws, BadInput,
-                         ::testing::Combine(::testing::ValuesIn(law_cases("bad_input")),
-                                            ::testing::ValuesIn(bad_inputs)),
-                         name_of);
-
-INSTANTIATE_TEST_SUITE_P(Coulomb, BadInput,
-                         ::testing::Combine(::testing::Values(LawCase{
-                                                "coulomb", "coulomb", {{{"friction", 0.3}}, {}}, {}}),
-                                            ::testing::Values(Bad{"overflow",
-                                                                  [](Nodes& n) {
-                                                                    for (int c = 0; c < 3; ++c)
-                                                                      n.v_free[210 + c] =
-                                                                          -1e300 * n.normal[210 + c];
-                                                                    n.delassus[70] = 1e-300;
-                                                                  },
-                                                                  "the impulse or the state overflows"})),
-                         name_of);
-
-TEST(BadInputAtMemory, LeavesStateAndHistoryUntouched) {
-  const ilaw::interface law = make_probe();
-  Nodes nodes(70);
-  const Results good = run(law, nodes, {}, false, 1);
-  nodes.v_free[3 * 66] = nan_value;
-  for (const bool separate : {false, true}) {
-    const Results bad = run(law, nodes, {.separate_state = separate}, false, 1);
-    EXPECT_EQ(bad.report.first_bad_node, 66) << "separate " << separate;
-    const std::size_t s = law.info().state_size;
-    for (std::size_t k = 0; k < bad.state.size(); ++k)
-      EXPECT_EQ(bad.state[k], k / s == 66 ? 0.0 : good.state[k]) << "separate " << separate << ", k " << k;
-  }
-}
-
-TEST(FullDelassus, ThatIsNotPositiveDefiniteIsRefused) {
-  const SetupBuilder setup({}, 3, ILAW_DELASSUS_FULL);
-  const ilaw::interface law = make_law("contact", setup);
-  Nodes nodes(3, 3, 6);
-  EXPECT_EQ(run(law, nodes, {}, false, 1).code, ILAW_OK);
-  nodes.delassus[6 + 5] = 2.5;  // H_12 larger than H_11 = H_22 = 2
-  const Results bad = run(law, nodes, {}, false, 1);
-  EXPECT_EQ(bad.report.first_bad_node, 1);
-  EXPECT_STREQ(bad.report.reason, "H is not finite and positive definite");
-}
 
 // Tiny and huge but representable inputs are ordinary.
 TEST(Extremes, AreSolvedWhereTheResultCanBeRepresented) {

@@ -1,29 +1,13 @@
-// A state comes back from the host, and is never trusted: what the law cannot have written is bad input.
+// How the variables of a state lie in it. That a state which the law cannot have written is bad input is for
+// `ilaw check` (foreign-state).
 #include "kit_probe.hpp"
 
 #include "support/small_batch.hpp"
 
-#include <cstring>
 #include <utility>
 
 namespace ilaw::testing {
 namespace {
-
-struct Foreign {
-  const char* law;
-  Parameters parameters;
-  const char* variable;
-  std::vector<double> values;
-};
-
-const std::vector<Foreign> foreign = {
-    {"postit", {{{"initial_adhesion", 1.0}}, {}}, "adhesion", {-1.0, nan_value, inf_value, -1e-300}},
-    {"postit", {{{"initial_adhesion", 1.0}}, {}}, "ruptures", {-1.0, 0.5, nan_value, inf_value}},
-    {"tie", {{{"strength", 1.0}}, {}}, "broken", {0.5, -1.0, 2.0, nan_value}},
-    {"tie", {}, "broken", {0.5, -1.0, 2.0, nan_value}},
-    {"cohesive", {{{"strength", 1.0}, {"toughness", 1.0}}, {}}, "damage", {-0.1, 1.1, nan_value}},
-    {"cohesive", {{{"strength", 1.0}, {"toughness", 1.0}}, {}}, "opening", {inf_value, nan_value}},
-    {"kit_probe", probe_parameters, "count", {-1.0, 2.5, 1e9, nan_value}}};
 
 std::size_t offset_of(const ilaw_instance_info& info, const std::string& name) {
   std::size_t at = 0;
@@ -43,49 +27,6 @@ struct Three : SmallBatch {
   std::size_t size;  // of a state
   const double normal[3] = {0.6, 0.0, 0.8};
 };
-
-TEST(ForeignState, IsBadInputAtItsNodeWithTheNameOfTheVariable) {
-  for (const Foreign& f : foreign)
-    for (const double value : f.values) {
-      const ilaw::interface law = make_tested_law(f.law, SetupBuilder(f.parameters));
-      Three nodes(law);
-      const std::size_t at = nodes.size + offset_of(law.info(), f.variable);
-      nodes.state[at] = value;
-      const std::vector<double> before = nodes.state;
-      SCOPED_TRACE(::testing::Message() << f.law << ", " << f.variable << " = " << value);
-      ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_BAD_NODES);
-      EXPECT_EQ(nodes.report.bad_count, 1);
-      EXPECT_EQ(nodes.report.first_bad_node, 1);
-      EXPECT_EQ(nodes.report.reason, std::isfinite(value)
-                                         ? "state variable '" + std::string(f.variable) +
-                                               "' has a value that the law cannot have written"
-                                         : std::string("the state is not finite"));
-      EXPECT_EQ(nodes.status[1], ILAW_BAD_INPUT);
-      EXPECT_EQ(std::memcmp(&nodes.state[nodes.size], &before[nodes.size], nodes.size * sizeof(double)), 0);
-      EXPECT_NE(nodes.status[0], ILAW_BAD_INPUT);
-      EXPECT_NE(nodes.status[2], ILAW_BAD_INPUT);
-    }
-}
-
-// The kit carries a frame in the state: one that is not orthonormal is bad input.
-TEST(ForeignState, FrameThatIsNoneIsBadInput) {
-  const ilaw::interface law = make_probe(ILAW_FRAME_GLOBAL);
-  struct Spoilt {
-    const char* variable;
-    std::size_t component;
-    double value;
-  };
-  for (const Spoilt& spoilt : {Spoilt{"frame_normal", 0, 0.0}, Spoilt{"frame_normal", 2, nan_value},
-                               Spoilt{"frame_tangent", 1, 2.0}, Spoilt{"frame_tangent", 0, inf_value}}) {
-    Three nodes(law);
-    nodes.state[nodes.size + offset_of(law.info(), spoilt.variable) + spoilt.component] = spoilt.value;
-    ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_BAD_NODES) << spoilt.variable;
-    EXPECT_EQ(nodes.report.bad_count, 1);
-    EXPECT_EQ(nodes.report.first_bad_node, 1);
-    EXPECT_STREQ(nodes.report.reason,
-                 "the state was not initialised, or is of another law or version (it holds no frame)");
-  }
-}
 
 // Bookkeeping is marked, so that pictures and tables can leave it out.
 TEST(StateVariables, SayWhichAreInternal) {

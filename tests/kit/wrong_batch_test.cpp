@@ -1,70 +1,11 @@
-// A batch that makes no sense is refused as a whole, with the reason and with nothing written.
+// Flags that a law does not know, and the first state. Other wrong batches: `ilaw check` (call-refused), and
+// plain_c/evaluate_test.cpp for their reasons.
 #include "kit_probe.hpp"
 
 #include "support/small_batch.hpp"
 
 namespace ilaw::testing {
 namespace {
-
-struct Wrong {
-  const char* reason;
-  void (*spoil)(ilaw_batch&);  // of two nodes
-};
-
-void list_node_below_base(ilaw_batch& b) {
-  static const std::int32_t index[] = {1, 0};
-  b.index = index;
-  b.index_base = 1;
-}
-void list_negative_node(ilaw_batch& b) {
-  static const std::int64_t index[] = {0, -1};
-  b.index64 = index;
-}
-void list_in_both_widths(ilaw_batch& b) {
-  static const std::int32_t index[] = {0, 1};
-  static const std::int64_t index64[] = {0, 1};
-  b.index = index;
-  b.index64 = index64;
-}
-void write_velocities_on_top(ilaw_batch& b) {
-  static double velocity[3];
-  b.velocity = ilaw::output(velocity, 0, 1);
-}
-
-const Wrong wrongs[] = {
-    {"v_free is null", [](ilaw_batch& b) { b.v_free.values = nullptr; }},
-    {"delassus is null", [](ilaw_batch& b) { b.delassus.values = nullptr; }},
-    {"gap is null", [](ilaw_batch& b) { b.gap.values = nullptr; }},
-    {"impulse is null", [](ilaw_batch& b) { b.impulse.values = nullptr; }},
-    {"v_previous is null", [](ilaw_batch& b) { b.v_previous.values = nullptr; }},
-    {"node_count is negative", [](ilaw_batch& b) { b.node_count = -1; }},
-    {"index_base is neither 0 nor 1", [](ilaw_batch& b) { b.index_base = 2; }},
-    {"a node of the index list lies below index_base", list_node_below_base},
-    {"a node of the index list lies below index_base", list_negative_node},
-    {"index and index64 are both given", list_in_both_widths},
-    {"impulse has a stride of 0", [](ilaw_batch& b) { b.impulse.node_stride = 0; }},
-    {"impulse has a stride of 0", [](ilaw_batch& b) { b.impulse.component_stride = 0; }},
-    {"velocity has a stride of 0", write_velocities_on_top},
-    {"status_stride is 0", [](ilaw_batch& b) { b.status_stride = 0; }},
-    {"time is not finite", [](ilaw_batch& b) { b.time = nan_value; }},
-    {"velocity_step is not a finite number > 0", [](ilaw_batch& b) { b.velocity_step = 0.0; }},
-    {"position_step is not a finite number > 0", [](ilaw_batch& b) { b.position_step = inf_value; }}};
-
-TEST(WrongBatch, IsRefusedWithNothingWritten) {
-  const ilaw::interface law = make_law("coulomb", SetupBuilder({{{"friction", 0.5}}, {}}));
-  SmallBatch nodes(2, {-1.0, -1.0, -1.0});
-  const Vector untouched{7.0, 7.0, 7.0};
-  std::fill(nodes.r.begin(), nodes.r.end(), untouched);
-  for (const Wrong& wrong : wrongs) {
-    ilaw_batch b = nodes.b;
-    wrong.spoil(b);
-    EXPECT_EQ(law.evaluate(b, &nodes.report), ILAW_INVALID_ARGUMENT);
-    EXPECT_STREQ(nodes.report.reason, wrong.reason);
-    for (const Vector& r : nodes.r) EXPECT_EQ(r, untouched) << wrong.reason;
-  }
-  EXPECT_EQ(law.evaluate(nodes.b), ILAW_OK);
-  EXPECT_EQ(nodes.r[0][0], 1.0);
-}
 
 // A flat array of all degrees of freedom gives its first numbers to every component. One normal for all nodes
 // (a node stride of 0) is no such array.
@@ -89,7 +30,9 @@ TEST(WrongBatch, FlatVectorsAreRefused) {
       ilaw_batch b = nodes.b;
       (b.*vector).component_stride = 0;
       EXPECT_EQ(law.evaluate(b, &nodes.report), d == 1 ? ILAW_OK : ILAW_INVALID_ARGUMENT) << name << d;
-      if (d > 1) EXPECT_EQ(nodes.report.reason, name + std::string(tail));
+      if (d > 1) {
+        EXPECT_EQ(nodes.report.reason, name + std::string(tail));
+      }
     }
   }
 }

@@ -1,5 +1,6 @@
 // Limits in which one law is another, for each form of H. A case of the section "limits" names the other law,
-// "limit", and its parameters, "limit_parameters"; "inertia": see properties_test.cpp.
+// "limit", and its parameters, "limit_parameters"; "broken": a state variable that is 1; "inertia": see
+// random_nodes.hpp.
 #include "laws/random_nodes.hpp"
 #include "support/sizes.hpp"
 
@@ -20,6 +21,9 @@ TEST_P(Limits, GiveTheSameBits) {
       other(law.more.at("limit"), parameters_of(law.more.value("limit_parameters", json::object())), nodes);
   run.initialise();
   other.initialise();
+  if (law.more.contains("broken"))
+    for (std::size_t i = 0; i < node_count; ++i)
+      run.set(law.more["broken"].get<std::string>().c_str(), i, 1.0);
   const int steps = part_of(most_steps);
   int acting = 0;
   for (int k = 0; k < steps && !HasFailure(); ++k) {

@@ -47,8 +47,8 @@ class Area(typing.NamedTuple):
 
 
 AREAS = {
-    "plugins": Area("plugins", ["laws_test"]),
-    "kit": Area("api/include/ilaw/kit", ["kit_test", "laws_test"]),
+    "plugins": Area("plugins", ["laws_test", "check_test:*Shipped*"]),
+    "kit": Area("api/include/ilaw/kit", ["kit_test", "laws_test", "ctest kit_probe_is_checked", "check_test:*Shipped*"]),
     "loader": Area("api/loader", ["loader_test", "loader_memory_test", "unusual_hosts_test"]),
     "search": Area("api/search", ["facets_test", "mesh_test"]),
     "coupled": Area("api/coupled", ["coupled_test", "coupled_made_test", "host_test", "closed_forms_test", "prestress_test",

@@ -1,12 +1,9 @@
 // law_cases.hpp - the laws of the tree and the parameters that the tests of all laws give them, found by
 // looking: each tests/laws/<law>/cases.json brings its own, in sections named for the tests that read them.
 //
-//   contract     layouts, threads, instruction sets (kit_test)
+//   contract     instruction sets, threads, large batches (kit_test)
 //   bad_input    what a node is refused for (kit_test)
-//   environment  no influence of the host's floating-point environment; "form" of H, scalar (kit_test)
-//   reach        what a host may skip (kit_test)
-//   frame        memory that turns with the axes; for laws that remember vectors (kit_test)
-//   options      tables in time and values per node: name as many parameters as go together (laws_test)
+//   frame        for laws that remember vectors (turning_test)
 //   properties   conditions, energy, units, axes (laws_test; its head explains the further keys)
 //   limits       parameters with which the law is another, bit for bit (laws_test)
 //   benchmarks   what ilaw bench --cases times (docs/benchmarks.md explains the keys)
@@ -87,15 +84,6 @@ inline std::vector<LawCase> law_cases(const std::string& section) {
 inline const char* name_of_form(std::uint32_t form) {
   if (form == ILAW_DELASSUS_TRANSVERSE) return "transverse";
   return form == ILAW_DELASSUS_SCALAR ? "scalar" : form == ILAW_DELASSUS_DIAGONAL ? "diagonal" : "full";
-}
-
-// The "form" of H of a case, scalar if left out.
-inline std::uint32_t form_of(const LawCase& given) {
-  const std::string name = given.more.value("form", "scalar");
-  for (const std::uint32_t form :
-       {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL, ILAW_DELASSUS_TRANSVERSE})
-    if (name == name_of_form(form)) return form;
-  throw std::runtime_error(given.name + ": no form of H is called " + name);
 }
 
 // Whether the "forms" of H of a case, all if left out, have this one.

@@ -127,42 +127,5 @@ TEST(CohesiveAnyInertia, TakesTheToughness) {
   EXPECT_GT(broken, 30);
 }
 
-// An axis turned over and back gives the mirror image; an H that couples by next to nothing gives what one
-// that does not couple gives.
-TEST(CohesiveAnyInertia, IsMirroredAndJoinsTheIsotropicForm) {
-  Draw draw(23);
-  std::optional<Curve> curve;
-  std::optional<NodeRun> bond, other;
-  for (int k = 0; k < 2000 && !HasFailure(); ++k) {
-    if (k % 50 == 0) {
-      const Parameters parameters = draw.bond();
-      curve.emplace(parameters);
-      bond.emplace("cohesive", parameters, 1.0, ILAW_DELASSUS_FULL);
-      other.emplace("cohesive", parameters, 1.0, ILAW_DELASSUS_FULL);
-    }
-    const Problem p(draw, *curve, 3.0);
-    NodeRun &node = *bond, &image = *other;
-    Problem mirrored = p;
-    for (Vector* each : {&mirrored.opening, &mirrored.position, &mirrored.v_previous, &mirrored.v_free})
-      (*each)[2] = -(*each)[2];
-    for (std::size_t c = 0; c < 2; ++c) mirrored.inertia.h[c][2] = mirrored.inertia.h[2][c] *= -1.0;
-    if (p.solve(node) != ILAW_OK) continue;
-    ASSERT_EQ(mirrored.solve(image), ILAW_OK);
-    const double allowed = 1e-9 * (norm(node.r) + norm(p.v_free));
-    for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(node.r[c], (c == 2 ? -1.0 : 1.0) * image.r[c], allowed) << "problem " << k;
-
-    Problem plain = p, coupled = p;
-    plain.inertia.h = {Vector{1.0, 0.0, 0.0}, {0.0, 0.6, 0.0}, {0.0, 0.0, 0.6}};
-    coupled.inertia.h = plain.inertia.h;
-    coupled.inertia.h[0][1] = coupled.inertia.h[1][0] = 1e-12;
-    coupled.inertia.h[1][2] = coupled.inertia.h[2][1] = -1e-12;
-    const bool solved = plain.solve(node) == ILAW_OK;
-    ASSERT_EQ(coupled.solve(image) == ILAW_OK, solved) << "problem " << k;
-    for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(node.r[c], image.r[c], 1e-7 * (norm(node.r) + norm(p.v_free))) << "problem " << k;
-  }
-}
-
 }  // namespace
 }  // namespace ilaw::testing

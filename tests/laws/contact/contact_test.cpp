@@ -75,18 +75,6 @@ TEST(Contact, PredictiveCreatesNoEnergyFromPenetration) {
   EXPECT_EQ(node.r[0], 0.0);
 }
 
-// Frictionless contact uses only H_NN of a full H; the tangential velocities follow the coupling.
-TEST(Contact, TakesAnyForm) {
-  NodeRun node("contact", {}, 1e-3, ILAW_DELASSUS_FULL);
-  node.h = {4.0, 3.0, 2.0, 1.0, -0.5, 0.25};
-  node.gap = 0.0;
-  ASSERT_EQ(node.step({-2.0, 1.0, 1.0}), ILAW_OK);
-  EXPECT_EQ(node.r[0], 0.5);
-  EXPECT_NEAR(node.v[0], 0.0, 1e-16);
-  EXPECT_NEAR(node.v[1], 1.5, 1e-15);
-  EXPECT_NEAR(node.v[2], 0.75, 1e-15);
-}
-
 // The next gap is g + l v_N for the position step l, whatever the velocity step: it is closed and no more.
 TEST(Contact, PredictsWithThePositionStep) {
   for (const double l : {3e-4, 1e-3, 7e-3}) {

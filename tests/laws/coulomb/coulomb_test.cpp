@@ -87,47 +87,6 @@ TEST(Coulomb, DissipatesAtMost) {
   }
 }
 
-// The outputs split the work r.(v^- + v)/2 exactly. Friction may give back what the impact takes: its part is
-// then zero, and the impact's the rest.
-TEST(Coulomb, EnergyOutputsAreTheWork) {
-  Random draw(3);
-  NodeRun node("coulomb", {{{"friction", 0.4}, {"restitution", 0.5}}, {}});
-  for (int k = 0; k < 20000; ++k) {
-    const Vector before = draw.vector(draw.decades(-1.0, 1.0));
-    node.gap = 0.0;
-    node.v_previous = before;
-    ASSERT_EQ(node.step(draw.vector(draw.decades(-1.0, 1.0))), ILAW_OK) << "k " << k;
-    const double normal = -0.5 * node.r[0] * (before[0] + node.v[0]);
-    const double sliding = -0.5 * (node.r[1] * (before[1] + node.v[1]) + node.r[2] * (before[2] + node.v[2]));
-    ASSERT_NEAR(node.energy[ILAW_ENERGY_IMPACT], std::max(0.0, normal + std::min(0.0, sliding)), 1e-13)
-        << "k " << k;
-    ASSERT_NEAR(node.energy[ILAW_ENERGY_FRICTION], std::max(0.0, sliding), 1e-13) << "k " << k;
-    ASSERT_EQ(node.energy[ILAW_ENERGY_RUPTURE], 0.0) << "k " << k;
-    ASSERT_EQ(node.energy[ILAW_ENERGY_STORED], 0.0) << "k " << k;
-  }
-}
-
-TEST(Coulomb, WithoutFrictionIsContactAndWithInfiniteFrictionSticks) {
-  Random draw(4);
-  NodeRun smooth("coulomb", {{{"friction", 0.0}, {"restitution", 0.3}}, {}});
-  NodeRun contact("contact", {{{"restitution", 0.3}}, {}});
-  NodeRun rough("coulomb", {{{"friction", inf_value}}, {}});
-  for (int k = 0; k < 100000; ++k) {
-    const Vector q = draw.vector(draw.decades(-300.0, 150.0)),
-                 before = draw.vector(draw.decades(-300.0, 150.0));
-    smooth.h[0] = contact.h[0] = rough.h[0] = draw(0.1, 3.0);
-    smooth.gap = contact.gap = rough.gap = draw(-1.0, 0.3);
-    smooth.v_previous = contact.v_previous = before;
-    ASSERT_EQ(smooth.step(q), ILAW_OK) << "k " << k;
-    ASSERT_EQ(contact.step(q), ILAW_OK) << "k " << k;
-    ASSERT_EQ(smooth.r, contact.r) << "k " << k;
-    ASSERT_EQ(smooth.v, contact.v) << "k " << k;
-    rough.v_previous = {};
-    ASSERT_EQ(rough.step(q), ILAW_OK) << "k " << k;
-    ASSERT_EQ(rough.status, rough.r[0] > 0.0 ? ILAW_STICK : ILAW_FREE) << "k " << k;
-  }
-}
-
 // H = diag(h_N, h_T, h_T): the same closed form.
 TEST(Coulomb, TakesADiagonalHByTheSameClosedForm) {
   NodeRun node("coulomb", {{{"friction", 0.5}}, {}}, 1e-3, ILAW_DELASSUS_DIAGONAL);
@@ -140,24 +99,6 @@ TEST(Coulomb, TakesADiagonalHByTheSameClosedForm) {
   EXPECT_EQ(node.status, ILAW_SLIP);
   EXPECT_NEAR(node.r[1], -0.15, 1e-16);
   EXPECT_NEAR(node.r[2], -0.2, 1e-16);
-}
-
-// The second tangent has to be named where its coefficient is not known to be the first's for ever.
-TEST(Coulomb, NeedsATangentWhereTheCoefficientsMayDiffer) {
-  const auto refusal = [](const Parameters& parameters, bool tangent) {
-    return refusal_of("coulomb",
-                      SetupBuilder(parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, tangent),
-                      ILAW_UNSUPPORTED);
-  };
-  const Parameters table{{{"friction", 0.3}}, {}, {{"friction_2", {0.0, 0.3, 1.0, 0.4}}}, {}},
-      per_node{{{"friction", 0.3}}, {}, {}, {"friction_2"}},
-      other{{{"friction", 0.3}, {"friction_2", 0.4}}, {}}, same{{{"friction", 0.3}, {"friction_2", 0.3}}, {}},
-      one{{}, {}, {}, {"friction"}};
-  for (const Parameters* apart : {&table, &per_node, &other}) {
-    EXPECT_THAT(refusal(*apart, false), HasSubstr("expected a tangent per node"));
-    EXPECT_EQ(refusal(*apart, true), "not refused");
-  }
-  for (const Parameters* alike : {&same, &one}) EXPECT_EQ(refusal(*alike, false), "not refused");
 }
 
 // A speed at rounding level of what was stopped is none: a contact that stuck has its static coefficient.

@@ -148,14 +148,6 @@ TEST(CoulombEllipse, HasItsOwnCoefficientAlongEachAxis) {
   EXPECT_NEAR(node.v[1] * node.r[2] / 0.04, node.v[2] * node.r[1] / 0.25, 1e-14);
 }
 
-TEST(CoulombEllipse, NeedsTangents) {
-  const Parameters parameters{{{"friction", 0.5}, {"friction_2", 0.2}}, {}};
-  const SetupBuilder without(parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL);
-  const std::string refusal = refusal_of("coulomb", without, ILAW_UNSUPPORTED);
-  EXPECT_THAT(refusal, HasSubstr("tell the two tangential axes apart"));
-  make_law("coulomb", SetupBuilder(parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, true));
-}
-
 // mu(v) = mu_k + (mu - mu_k) exp(-decay |v_T|), at the velocity before the step.
 TEST(KineticFriction, FallsFromTheStaticOneWithTheSlipSpeed) {
   for (const double decay : {0.0, 0.7, inf_value}) {

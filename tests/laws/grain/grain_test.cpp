@@ -238,10 +238,5 @@ TEST(Grain, SwingsOnMindlinsSpringAndSlips) {
   }
 }
 
-TEST(Grain, NeedsAShearModulusWithFriction) {
-  EXPECT_THAT(refusal_of("grain", {{{"radius", 1.0}, {"modulus", 1.0}, {"friction", 0.3}}, {}}),
-              HasSubstr("'shear_modulus'"));
-}
-
 }  // namespace
 }  // namespace ilaw::testing

@@ -112,53 +112,5 @@ TEST(RollingGrain, StaysOnASlopeBelowTheLimit) {
     }
 }
 
-// Any motion before the step, also one that turns round within it, over a few steps of the same nodes.
-TEST(RollingGrain, AddsNoEnergyAndTellsWhereItWent) {
-  constexpr std::size_t count = 4000;
-  Parameters parameters = {{{"radius", 0.05},
-                            {"modulus", modulus},
-                            {"adhesion_energy", 2.0},
-                            {"friction", 0.4},
-                            {"shear_modulus", 6e6},
-                            {"rolling_friction", 0.3},
-                            {"twisting_friction", 0.2}},
-                           {}};
-  for (const double step : {1e-3, 1.7e-4, 2.3e-5}) {
-    Spheres nodes(parameters, count, ILAW_FRAME_GLOBAL, "grain");
-    nodes.velocity_step = nodes.position_step = step;
-    std::vector<double> stored(count, 0.0);
-    int resisted = 0;
-    for (unsigned seed = 1; seed < 9; ++seed) {
-      const std::vector<Vector> normal = nodes.normal, tangent = nodes.tangent;
-      const std::vector<SpinInertia> h = nodes.h;
-      nodes.draw(seed, 0.999);
-      if (seed > 1) nodes.normal = normal, nodes.tangent = tangent, nodes.h = h;
-      for (std::size_t i = 0; i < count; ++i) nodes.gap[i] = -1e-5 * static_cast<double>(i % 3);
-      ASSERT_EQ(nodes.evaluate(), ILAW_OK) << nodes.report.reason;
-      for (std::size_t i = 0; i < count; ++i) {
-        const double spun = 0.5 * dot(nodes.m[i], nodes.spin_previous[i] + nodes.w[i]);
-        const double work = 0.5 * dot(nodes.r[i], nodes.v_previous[i] + nodes.v[i]) + spun;
-        const auto& parts = nodes.energy[i];
-        const double lost =
-            parts[ILAW_ENERGY_FRICTION] + parts[ILAW_ENERGY_IMPACT] + parts[ILAW_ENERGY_RUPTURE];
-        const double scale =
-            std::abs(work) + std::abs(stored[i]) + std::abs(parts[ILAW_ENERGY_STORED]) + 1e-9;
-        ASSERT_LE(spun, 1e-14 * scale) << "node " << i;
-        ASSERT_NEAR(work + lost + parts[ILAW_ENERGY_STORED] - stored[i], 0.0, 1e-11 * scale) << "node " << i;
-        stored[i] = parts[ILAW_ENERGY_STORED];
-        resisted += spun < 0.0;
-      }
-    }
-    EXPECT_GT(resisted, 1000);
-  }
-}
-
-TEST(RollingGrain, RefusesItsLimitsWithoutSpins) {
-  for (const char* name : {"rolling_friction", "twisting_friction"})
-    EXPECT_NE(refusal_of("grain", {{{"radius", 1.0}, {"modulus", 1.0}, {name, 0.0}}, {}})
-                  .find(std::string("parameter '") + name + "' needs spins"),
-              std::string::npos);
-}
-
 }  // namespace
 }  // namespace ilaw::testing

@@ -96,22 +96,6 @@ TEST(RoughImpact, MakesNoEnergyWhateverMovesIt) {
 
 // ---- its limits, its state
 
-TEST(RoughImpact, IsPredictiveWithoutRestitution) {
-  Random random(5);
-  for (const double friction : {0.3, inf_value}) {
-    NodeRun node("impact", rough(friction, 0.0)), other("coulomb", {{{"friction", friction}}, {}});
-    for (int k = 0; k < 50000; ++k) {
-      const double scale = std::pow(10.0, k % 2 ? random(-100.0, 100.0) : 0.0);
-      node.gap = k % 10 == 0 ? 0.0 : 1e-3 * scale * random();
-      node.h[0] = 1.0 + 0.9 * random();
-      node.v_previous = random.vector(scale);
-      other.v_previous = node.v_previous;
-      ASSERT_TRUE(step_alike(node, other, random.vector(scale))) << "k " << k;
-      ASSERT_EQ(node.state[0], 0.0) << "k " << k;
-    }
-  }
-}
-
 TEST(RoughImpact, RefusesAnHThatCouples) {
   NodeRun node("impact", rough(0.5, 0.5), 1e-3, ILAW_DELASSUS_FULL);
   node.h = {1.0, 2.0, 2.0, 0.0, 0.0, 0.0};

@@ -274,35 +274,5 @@ TEST(Impact, NeverPassesAtAnyPositionStep) {
 
 // ---- its limits, its state
 
-TEST(Impact, IsPredictiveWithoutRestitution) {
-  Random random(5);
-  NodeRun node("impact", frictionless(0.0)), other("contact", {{}, {{"activation", "predictive"}}});
-  for (int k = 0; k < 100000; ++k) {
-    const double scale = std::pow(10.0, k % 2 ? random(-300.0, 300.0) : 0.0);
-    node.gap = k % 10 == 0 ? 0.0 : 1e-3 * scale * random();
-    node.h[0] = 1.0 + 0.9 * random();
-    node.v_previous = other.v_previous = {scale * random(), 0.0, 0.0};
-    ASSERT_TRUE(step_alike(node, other, {scale * random(), 0.0, 0.0})) << "k " << k;
-    ASSERT_EQ(node.state[0], 0.0) << "k " << k;
-  }
-}
-
-// The rest of an impact is in the state: a run that begins between both impulses goes on bit for bit.
-TEST(Impact, GoesOnFromItsState) {
-  constexpr double h = 1e-2;
-  NodeRun node("impact", frictionless(0.8), h);
-  node.gap = 0.012;
-  node.v_previous = {-2.0, 0.0, 0.0};
-  ASSERT_EQ(node.step({-2.1, 0.0, 0.0}), ILAW_OK);
-  ASSERT_NE(node.state[0], 0.0);
-  NodeRun resumed("impact", frictionless(0.8), h);
-  resumed.state = node.state;
-  resumed.v_previous = node.v_previous;
-  node.gap += h * node.v[0];
-  EXPECT_TRUE(step_alike(node, resumed, {node.v[0] - 0.1, 0.0, 0.0}));
-  EXPECT_GT(node.r[0], 0.0);
-  EXPECT_EQ(node.state, resumed.state);
-}
-
 }  // namespace
 }  // namespace ilaw::testing

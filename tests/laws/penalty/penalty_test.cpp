@@ -236,67 +236,6 @@ TEST(Penalty, ExplicitReadsWhatIsKnownBefore) {
   }
 }
 
-// Up to a million random steps of nodes with memory: r_N pushes, |r_T| <= mu r_N, a power of ten in stiffness
-// at a time; no energy counts as negative.
-TEST(Penalty, RandomHistoriesKeepTheCone) {
-  Random random(2);
-  const int histories = part_of(1000);
-  int slipping = 0, sticking = 0;
-  for (int history = 0; history < histories && !::testing::Test::HasFailure(); ++history) {
-    const bool implicit = history % 2 == 0;
-    const double h = 1e-2, friction = history % 7 == 0 ? inf_value : 0.3;
-    const double stiffness = std::pow(10.0, implicit ? random(-4.0, 8.0) : random(-4.0, 3.0));
-    const double tangential = std::pow(10.0, implicit ? random(-4.0, 8.0) : random(-4.0, 3.0));
-    NodeRun node("penalty",
-                 with(implicit ? "implicit" : "explicit", {{"stiffness", stiffness},
-                                                           {"tangential_stiffness", tangential},
-                                                           {"friction", friction},
-                                                           {"damping", history % 3 ? 0.0 : 5.0},
-                                                           {"exponent", history % 5 ? 1.0 : 1.5}}),
-                 h);
-    for (int k = 0; k < 1000; ++k) {
-      node.h[0] = 1.0 + 0.9 * random();
-      // The gap is its own from step to step for a while, so that springs strain.
-      node.gap = k % 20 == 0 ? 0.02 * random() : node.gap + h * node.v[0];
-      const Vector v{random() - 0.3, random(), random()};
-      node.v_previous = v;
-      ASSERT_EQ(node.step(v), ILAW_OK) << node.report.reason;
-      ASSERT_GE(node.r[0], 0.0);
-      const double shear = std::hypot(node.r[1], node.r[2]);
-      if (friction < inf_value) {
-        ASSERT_LE(shear, friction * node.r[0] * (1.0 + 4 * ulp));
-      }
-      for (const double energy : node.energy) ASSERT_GE(energy, 0.0);
-      slipping += node.status == ILAW_SLIP;
-      sticking += node.status == ILAW_STICK;
-    }
-  }
-  EXPECT_GT(slipping, 100 * histories);
-  EXPECT_GT(sticking, 10 * histories);
-}
-
-TEST(Penalty, RefusesBadParameters) {
-  using Given = std::map<std::string, double>;
-  for (const auto& [integration, numbers, named] :
-       {std::tuple<const char*, Given, const char*>{"implicit", {}, "'stiffness' is missing"},
-        {"implicit", {{"stiffness", -1.0}}, "'stiffness' = -1"},
-        {"explicit", {{"stiffness", inf_value}}, "; found stiffness = inf, integration = \"explicit\""},
-        {"explicit",
-         {{"stiffness", 1.0}, {"friction", 0.1}},
-         "; found friction = 0.1, tangential_stiffness = inf, "},
-        {"implicit", {{"stiffness", 1.0}, {"tangential_stiffness", 0.0}}, "'tangential_stiffness' = 0"},
-        {"implicit", {{"stiffness", 1.0}, {"exponent", 0.5}}, "'exponent' = 0.5"},
-        {"implicit", {{"stiffness", 1.0}, {"damping", inf_value}}, "'damping' = inf"},
-        {"implicit", {{"stiffness", 1.0}, {"restitution", 1.1}}, "'restitution' = 1.1"},
-        {"implicit", {{"stiffness", 1.0}, {"restitution", 0.5}, {"damping", 2.0}}, "damping = 2"},
-        {"implicit", {{"stiffness", 1.0}, {"restitution", 0.5}, {"exponent", 1.5}}, "exponent = 1.5"},
-        {"explicit", {{"stiffness", 1.0}, {"restitution", 0.5}}, "restitution = 0.5"},
-        {"backwards", {{"stiffness", 1.0}}, "'integration' = \"backwards\""}}) {
-    const std::string refusal = refusal_of("penalty", with(integration, numbers));
-    EXPECT_THAT(refusal, HasSubstr(named));
-  }
-}
-
 // A damper slows down a node that penetrates, not one that comes.
 TEST(Penalty, AnExplicitDamperWaitsForTouch) {
   for (const double gap : {0.0, 0.01}) {

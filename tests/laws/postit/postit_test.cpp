@@ -386,19 +386,5 @@ TEST(Postit, AFreeNodeOutOfReachKeepsItsState) {
   }
 }
 
-// Without adhesion the law is coulomb, bit for bit.
-TEST(Postit, WithoutAdhesionIsCoulomb) {
-  Random random(5);
-  NodeRun glue("postit", {{{"adhesion_limit", 0.0}, {"friction", 0.4}}, {}});
-  NodeRun friction("coulomb", {{{"friction", 0.4}}, {{"activation", "moreau"}}});
-  for (int k = 0; k < 100000; ++k) {
-    const double scale = random.decades(-300.0, 150.0);
-    const Vector v = random.vector(scale);
-    glue.gap = random();
-    glue.h[0] = 1.0 + 0.9 * random();
-    ASSERT_TRUE(step_alike(glue, friction, v)) << k;
-  }
-}
-
 }  // namespace
 }  // namespace ilaw::testing

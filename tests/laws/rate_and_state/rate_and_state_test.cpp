@@ -50,24 +50,6 @@ TEST(RateAndState, SolvesItsEquationAtAnySpeed) {
   }
 }
 
-// A full H without coupling: the same motion by the solver of any H.
-TEST(RateAndState, IsTheSameForAFullInertia) {
-  Random random(2);
-  const Surface law{.v0 = 1e-3, .d = 0.01};
-  NodeRun node("rate_and_state", law.parameters(), 0.01, ILAW_DELASSUS_TRANSVERSE),
-      other("rate_and_state", law.parameters(), 0.01, ILAW_DELASSUS_FULL);
-  node.h = {1.0, 0.7};
-  other.h = {1.0, 0.7, 0.7, 0.0, 0.0, 0.0};
-  for (int k = 0; k < 2000; ++k) {
-    const Vector free{-1.0, 2.0 * random(), 2.0 * random()};
-    node.v_previous = other.v_previous = free;
-    ASSERT_EQ(node.step(free), ILAW_OK);
-    ASSERT_EQ(other.step(free), ILAW_OK);
-    ASSERT_THAT(node.r, VectorNear(other.r, 1e-12));
-    ASSERT_NEAR(node.state[0], other.state[0], 1e-9 * node.state[0]);
-  }
-}
-
 // A coupled H: on the cone of the coefficient at the speed after the step, which is opposite to the impulse.
 TEST(RateAndState, SolvesItsEquationForACoupledInertia) {
   Random random(3);

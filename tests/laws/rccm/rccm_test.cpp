@@ -261,14 +261,5 @@ TEST(Rccm, SolvesItsEquationWhereTheBondIsStiff) {
   EXPECT_GT(broken, 300);
 }
 
-TEST(Rccm, NeedsAFiniteStiffness) {
-  const auto refusal = [](double normal) {
-    return refusal_of("rccm", Adhesion{normal, 1.0, 1.0, 0.0, 0.0}.parameters());
-  };
-  EXPECT_EQ(refusal(1.0), "not refused");
-  EXPECT_THAT(refusal(std::numeric_limits<double>::infinity()), HasSubstr("normal_stiffness"));
-  EXPECT_THAT(refusal(0.0), HasSubstr("normal_stiffness"));
-}
-
 }  // namespace
 }  // namespace ilaw::testing

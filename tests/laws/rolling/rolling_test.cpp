@@ -1,4 +1,4 @@
-// rolling at nodes with spins: its conditions against an independent solver, its work, symmetries, refusals.
+// rolling at nodes with spins: its conditions against an independent solver, and limits.
 #include "laws/rolling/spheres.hpp"
 
 namespace ilaw::testing {
@@ -79,28 +79,6 @@ TEST(Rolling, KeepsItsComplementarity) {
   }
 }
 
-// With any motion before the step, also one that turns round within it.
-TEST(Rolling, AddsNoEnergyAndTellsWhereItWent) {
-  for (const double restitution : {0.0, 0.6}) {
-    Spheres nodes(resistance(friction, rolling, twisting, restitution), node_count);
-    nodes.draw(3, 0.999);
-    ASSERT_EQ(nodes.evaluate(), ILAW_OK) << nodes.report.reason;
-    int acts = 0, scaled = 0;
-    for (std::size_t i = 0; i < node_count; ++i) {
-      const double work = 0.5 * (dot(nodes.r[i], nodes.v_previous[i] + nodes.v[i]) +
-                                 dot(nodes.m[i], nodes.spin_previous[i] + nodes.w[i]));
-      const auto& parts = nodes.energy[i];
-      ASSERT_LE(work, 1e-14) << "node " << i;
-      ASSERT_NEAR(work + parts[ILAW_ENERGY_FRICTION] + parts[ILAW_ENERGY_IMPACT], 0.0, 1e-14) << "node " << i;
-      for (const double part : parts) ASSERT_GE(part, 0.0) << "node " << i;
-      acts += nodes.r[i] != Vector{};
-      scaled += nodes.r[i] != Vector{} && work > -1e-15;
-    }
-    EXPECT_GT(acts, 2000);
-    EXPECT_GT(scaled, 20) << "nodes whose impulse is the largest part that adds no energy";
-  }
-}
-
 // Obstacle and body in each other's place: n, relative motion and k change their sign, and so do r and m.
 TEST(Rolling, IsTheSameWithRolesSwapped) {
   const Parameters parameters = resistance(friction, rolling, twisting, 0.5);
@@ -168,77 +146,8 @@ TEST(Rolling, AgreesWithALawInC) {
   }
 }
 
-// ---- refusals
-
-TEST(Rolling, RefusesParametersThatNeedSpins) {
-  for (const char* name : {"rolling_friction", "twisting_friction"}) {
-    const Parameters given{{{"friction", 0.3}, {name, 0.0}}, {}};
-    for (const std::uint32_t form : {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_TRANSVERSE, ILAW_DELASSUS_FULL})
-      EXPECT_THAT(refusal_of("rolling", SetupBuilder(given, 3, form)),
-                  HasSubstr(std::string("'") + name + "' needs spins"));
-    EXPECT_EQ(refusal_of("rolling", SetupBuilder(given, 3, ILAW_DELASSUS_TRANSVERSE_SPIN)), "not refused");
-  }
-  const Parameters in_c{{{"rolling", 0.1}}, {}};
-  EXPECT_THAT(refusal_of("rolling_in_c", in_c), HasSubstr("'rolling' needs spins"));
-}
-
-TEST(Rolling, RefusesSpinsInThePlane) {
-  const Parameters given{{{"friction", 0.3}}, {}};
-  for (const std::uint32_t dimension : {1U, 2U})
-    EXPECT_THAT(refusal_of("rolling", SetupBuilder(given, dimension, ILAW_DELASSUS_TRANSVERSE_SPIN),
-                           ILAW_UNSUPPORTED),
-                HasSubstr("has no spins"));
-}
-
-TEST(Rolling, RefusesBatchesWithoutSpins) {
-  Spheres nodes(resistance(friction, rolling, twisting), 4);
-  nodes.draw(11);
-  const auto refused = [&](const ilaw_batch& b, const std::string& why) {
-    EXPECT_EQ(nodes.evaluate(b), ILAW_INVALID_ARGUMENT) << why;
-    EXPECT_EQ(nodes.report.reason, why);
-  };
-  ilaw_batch b = nodes.batch();
-  b.spin_free = {};
-  refused(b, "spin_free is null");
-  b = nodes.batch(), b.spin_previous = {};
-  refused(b, "spin_previous is null");
-  b = nodes.batch(), b.moment = {};
-  refused(b, "moment is null");
-  b = nodes.batch(), b.moment.node_stride = 0;
-  refused(b, "moment has a stride of 0");
-}
-
-TEST(Rolling, RefusesBadNodesAlone) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  struct {
-    const char* reason;
-    void (*spoil)(Spheres&);
-  } const cases[] = {
-      {"spin_free or spin_previous is not finite", [](Spheres& s) { s.spin_free[3][1] = nan; }},
-      {"spin_free or spin_previous is not finite", [](Spheres& s) { s.spin_previous[3][0] = nan; }},
-      {"H is not finite and positive definite",
-       [](Spheres& s) { s.h[3][2] = -std::sqrt(s.h[3][1] * s.h[3][4]); }},
-      {"H is not finite and positive definite", [](Spheres& s) { s.h[3][3] = 0.0; }},
-      {"H is not finite and positive definite", [](Spheres& s) { s.h[3][4] = nan; }}};
-  for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL})
-    for (const auto& one : cases) {
-      Spheres good(resistance(friction, rolling, twisting), 9, frame),
-          bad(resistance(friction, rolling, twisting), 9, frame);
-      good.draw(12), bad.draw(12);
-      one.spoil(bad);
-      ASSERT_EQ(good.evaluate(), ILAW_OK);
-      ASSERT_EQ(bad.evaluate(), ILAW_BAD_NODES) << one.reason;
-      EXPECT_STREQ(bad.report.reason, one.reason);
-      EXPECT_EQ(bad.report.first_bad_node, 3);
-      EXPECT_EQ(bad.status[3], ILAW_BAD_INPUT);
-      EXPECT_EQ(bad.m[3], Vector{});
-      for (std::size_t c = 0; c < 3; ++c)
-        EXPECT_TRUE(bad.w[3][c] == bad.spin_free[3][c] || std::isnan(bad.spin_free[3][c]));
-      for (const std::size_t i : {0, 2, 4, 8}) {
-        EXPECT_EQ(bad.r[i], good.r[i]);
-        EXPECT_EQ(bad.m[i], good.m[i]);
-      }
-    }
+TEST(Rolling, LawInCNeedsSpins) {
+  EXPECT_THAT(refusal_of("rolling_in_c", {{{"rolling", 0.1}}, {}}), HasSubstr("'rolling' needs spins"));
 }
 
 }  // namespace

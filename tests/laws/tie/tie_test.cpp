@@ -114,23 +114,6 @@ TEST(Tie, ForceIsOfANode) {
   }
 }
 
-// After rupture: nothing holds it, and the bits of law contact are left.
-TEST(Tie, BrokenIsContact) {
-  Random random(2);
-  Tied node({{{"strength", 0.5}, {"memory", 0.1}}, {}}, 1e-3);
-  NodeRun contact("contact", {{}, {{"activation", "moreau"}}});
-  ASSERT_EQ(node.push({1.0, 0, 0}), ILAW_BROKEN);
-  EXPECT_EQ(node.r, Vector{});
-  EXPECT_EQ(node.v[0], 1.0);
-  for (int k = 0; k < 10000; ++k) {
-    const Vector v = random.vector();
-    node.gap = random();
-    node.h[0] = 1.0 + 0.9 * random();
-    ASSERT_TRUE(step_alike(node, contact, v)) << k;
-  }
-  EXPECT_EQ(node.named("broken"), 1.0);
-}
-
 // In shear, which the windowed sum carries through frames and slopes of its own.
 const BondLaw bond{"tie",
                    [](double limit, double buckets) {
@@ -141,21 +124,6 @@ const BondLaw bond{"tie",
 TEST(Tie, BreaksWhenTheExactIntegralPassesTheStrength) { expect_rupture_instants(bond); }
 
 TEST(Tie, ShocksAddUpWithinTheWindow) { expect_double_shocks(bond); }
-
-TEST(Tie, RefusesBadParameters) {
-  for (const auto& [name, value] : {std::pair{"strength", -1.0},
-                                    {"force", -1.0},
-                                    {"force", 1.0},
-                                    {"memory", -1e-3},
-                                    {"buckets", 0.0},
-                                    {"buckets", 2.5}}) {
-    const std::string refusal = refusal_of("tie", Parameters{{{name, value}}, {}});
-    EXPECT_THAT(refusal, HasSubstr(name)) << name << " = " << value;
-  }
-  const std::string both =
-      refusal_of("tie", Parameters{{{"force", 1.0}, {"strength", 1.0}, {"memory", 0.1}}, {}});
-  EXPECT_THAT(both, HasSubstr("'strength' and 'force' are two limits"));
-}
 
 // The interval of a step whose position step is short may begin a bucket before one that is open already:
 // what falls there leaves the window with that bucket. Buckets of 1; 3/4 of the second pull act before 2.
