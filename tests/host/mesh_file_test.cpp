@@ -174,6 +174,16 @@ TEST(MeshFile, NamesSetsByArraysOfIntegers) {
   EXPECT_EQ(sets.count("b.left_1"), 0U);
 }
 
+TEST(MeshFile, WithTwoArraysForOneSetIsRefused) {
+  WrittenMesh mesh = two_cells();
+  mesh.of_cells["a b"] = {1, 0};
+  mesh.of_cells["a_b"] = {0, 1};
+  expect_refusal(refusal_of_mesh(mesh), "found two arrays or values for the set 'a_b', expected one");
+  mesh.of_cells.erase("a_b");
+  mesh.of_nodes["a_b"].assign(12, 1);
+  EXPECT_EQ(refusal_of_mesh(mesh), "not refused");  // sets of nodes and of cells may share a name
+}
+
 // Numbers of nodes are no names.
 TEST(MeshFile, DoesNotNameASetPerNode) {
   WrittenMesh mesh = box_mesh({10, 10, 10}, {1, 1, 1}, false);

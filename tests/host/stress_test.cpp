@@ -478,6 +478,20 @@ TEST(Stress, FindsASceneThatStops) {
   EXPECT_EQ(verdict.invariant, "stops");
 }
 
+// It pushes with 1 N s whatever the motion, so the lighter node gains most, in the last step.
+TEST(Stress, NamesWhereALawMadeEnergy) {
+  setenv("ILAW_BROKEN", "push", 1);
+  json scene = json::parse(R"({"model": {"type": "points", "dimension": 1, "points": [
+      {"mass": 2.0, "position": [0.0], "velocity": [-1.0]}, {"mass": 1.0, "position": [0.0], "velocity": [-1.0]}]},
+      "time": {"dt": 1.0, "end": 5.0}, "interfaces": [{"law": "broken", "nodes": "all",
+      "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})");
+  scene["interfaces"][0]["library"] = ILAW_BROKEN_LAW;
+  const StressVerdict verdict = stress_scene(scene);
+  unsetenv("ILAW_BROKEN");
+  EXPECT_EQ(verdict.invariant, "energy added by interfaces");
+  EXPECT_THAT(verdict.reason, HasSubstr("; largest work of an impulse [J] at node 1 in step 5: 4"));
+}
+
 // The command in the small: `ilaw stress` for longer.
 class RandomScenes : public ::testing::TestWithParam<bool> {};
 TEST_P(RandomScenes, FulfilTheInvariants) {

@@ -199,8 +199,13 @@ void read_groups(vtkDataSetAttributes& arrays, std::size_t count, std::vector<in
                       std::to_string(count));
     const auto entries = entries_by_value(*array);
     const bool is_flag = entries.size() == 1 && entries.begin()->first == 1.0;
-    for (const auto& [value, members] : entries)
-      mesh.groups[name_of(array->GetName()) + (is_flag ? "" : "_" + in_digits(value, 10))].*part = members;
+    for (const auto& [value, members] : entries) {
+      const std::string name = name_of(array->GetName()) + (is_flag ? "" : "_" + in_digits(value, 10));
+      std::vector<int>& set = mesh.groups[name].*part;
+      if (!set.empty())
+        throw MeshError("found two arrays or values for the set '" + name + "', expected one");
+      set = members;
+    }
   }
 }
 

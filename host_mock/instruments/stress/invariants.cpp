@@ -24,6 +24,7 @@ constexpr std::int64_t most_unsolved = 20;
 
 // Steps of a scene beside others that are related to it.
 constexpr std::int64_t most_related_steps = 200;
+constexpr const char* most_work = "largest work of an impulse [J]";
 
 constexpr const char* scene_name = "stress.json";
 
@@ -96,12 +97,16 @@ class Judge {
     if (!report.broken.empty()) end(StressEnding::failed, "relations", report.broken.front());
   }
 
-  // A figure against its bound.
-  void hold(const char* invariant, double figure, double bound) {
+  // A figure against its bound, and where a run had the worst of what may be its cause.
+  void hold(const char* invariant, double figure, double bound, const Worst& at = {},
+            const char* cause = "largest") {
     const double part = figure > 0.0 ? figure / bound : 0.0;
     if (part <= 1.0 || verdict_.ending == StressEnding::failed) return;
     end(StressEnding::failed, invariant,
-        formatted("%s: found %.3g, expected at most %.3g", invariant, figure, bound));
+        formatted("%s: found %.3g, expected at most %.3g", invariant, figure, bound) +
+            (at.node < 0 ? ""
+                         : formatted("; %s at node %d in step %lld: %.3g", cause, at.node,
+                                     static_cast<long long>(at.step), at.value)));
   }
 
   void compare(const Ledger& ledger) {
@@ -118,17 +123,19 @@ class Judge {
       return end(StressEnding::failed, "warning", "nothing says that the step is beyond the critical one");
     const double open = energy.balance_error * energy.scale;
     figures.worst_bound = open > 0.0 ? open / ledger.balance_bound() : 0.0;
-    hold("energy balance", open, ledger.balance_bound());
+    hold("energy balance", open, ledger.balance_bound(), ledger.work(), most_work);
     if (is_explicit) return hold_explicit(energy, ledger.added_bound(tally));
     figures.added = energy.scale > 0.0 ? std::abs(energy.reaction_work) / energy.scale : 0.0;
     figures.penetration =
-        ledger.fastest() > 0.0 ? ledger.penetration() / (run_->scene.dt * ledger.fastest()) : 0.0;
+        ledger.fastest() > 0.0 ? ledger.penetration().value / (run_->scene.dt * ledger.fastest()) : 0.0;
     if (energy.reaction_work != 0.0)
       figures.worst_bound =
           std::max(figures.worst_bound, std::abs(energy.reaction_work) / ledger.added_bound(tally));
-    hold("energy added by interfaces", std::abs(energy.reaction_work), ledger.added_bound(tally));
-    hold("dissipation of a node", -energy.least_dissipation, ledger.dissipation_bound());
-    hold("penetration", ledger.penetration(), ledger.penetration_bound());
+    hold("energy added by interfaces", std::abs(energy.reaction_work), ledger.added_bound(tally),
+         ledger.work(), most_work);
+    hold("dissipation of a node", -energy.least_dissipation, ledger.dissipation_bound(), ledger.work(),
+         most_work);
+    hold("penetration", ledger.penetration().value, ledger.penetration_bound(), ledger.penetration());
     hold("velocities", ledger.worst_velocity(), 1.0);
   }
 

@@ -73,7 +73,7 @@ void Ledger::add(std::size_t number, const Integrator& integrator, double speed)
   const double obstacle =
       std::max(interface.obstacle().velocity_before().norm(), interface.obstacle().velocity().norm());
   fastest_ = std::max(fastest_, (is_alone ? 1.0 : 2.0) * speed + obstacle);
-  if (interface.sums().penetration > penetration_) measure_depth(number, integrator);
+  if (interface.sums().penetration > penetration_.value) measure_depth(number, integrator);
   const double stored = interface.sums().energy[ILAW_ENERGY_STORED];
   stored_ += stored;
   rounded_most_ = std::max(rounded_most_, stored);
@@ -81,6 +81,7 @@ void Ledger::add(std::size_t number, const Integrator& integrator, double speed)
     const Vector impulse = interface.impulse(contact);
     if (impulse.isZero(0.0)) continue;
     const Ends ends = ends_of(interface, contact, integrator);
+    work_.note(0.5 * impulse.dot(ends.before + ends.after), integrator.steps(), interface.node_of(contact));
     const Vector change = interface.delassus(contact) * impulse;
     const double rounded =
         impulse.norm() * (ends.before.norm() + (ends.after - change).norm() + change.norm() + ends.carried);
@@ -120,7 +121,8 @@ void Ledger::measure_depth(std::size_t number, const Integrator& integrator) {
   for (const std::int32_t contact : interface.active()) {
     const double gap =
         interface.gap_at(interface.node_index_of(contact), integrator.displacement(), integrator.time());
-    penetration_ = std::max(penetration_, -gap - start_depth[interface.node_of(contact)]);
+    const int node = interface.node_of(contact);
+    penetration_.note(-gap - start_depth[node], integrator.steps(), node);
   }
 }
 

@@ -14,6 +14,17 @@ namespace ilaw::host {
 // The few operations of each term of a bound, times what one of them rounds.
 inline constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
 
+// The worst of a run.
+struct Worst {
+  double value = 0.0;
+  std::int64_t step = 0;
+  int node = -1;
+
+  void note(double found, std::int64_t at_step, int at_node) {
+    if (found > value) *this = {found, at_step, at_node};
+  }
+};
+
 class Ledger {
  public:
   explicit Ledger(const Scene& scene);
@@ -31,9 +42,11 @@ class Ledger {
   double dissipation_bound() const;
   // Rigid contact lets a node in by what it moves within a step; one that started inside goes no
   // deeper.
-  double penetration() const { return penetration_; }  // beyond that at the start
+  const Worst& penetration() const { return penetration_; }  // beyond that at the start
   double penetration_bound() const;
   double fastest() const { return fastest_; }
+  // Largest work of one impulse, by which a law that makes energy is found.
+  const Worst& work() const { return work_; }
   // Holds for a linear model below its critical step: K (1 - cfl^2) <= K + I, as U_n.K U_{n+1}/2 is that of
   // the mean of both minus h^2 V.K V/8.
   double worst_velocity() const { return worst_velocity_; }
@@ -59,7 +72,8 @@ class Ledger {
   std::int64_t steps_ = 0;
   double rounded_ = 0.0, rounded_most_ = 0.0, stored_ = 0.0;
   double size_ = 0.0, most_kinetic_ = 0.0, farthest_ = 0.0;
-  double fastest_ = 0.0, penetration_ = 0.0, worst_velocity_ = 0.0;
+  double fastest_ = 0.0, worst_velocity_ = 0.0;
+  Worst penetration_, work_;
 };
 
 }  // namespace ilaw::host
