@@ -267,6 +267,63 @@ def steel_bar() -> list[Case]:
                  lambda found: found.summary["energy"]["dissipated_impact"] / (0.5 * density * section * length * speed**2), 1e-2)]  # fmt: skip
 
 
+def end_notched() -> Case:
+    """Two arms bent together shear along their joint. V is the shear force per width of a half, c = 3 V/(4 h) the
+    shear stress of an uncut beam. The slip s obeys s'' = 8 (strength (1 - s/w) - c)/(E h), w = 2 G/strength, so that
+    G - c w = 9 V^2 a^2/(4 E h^3) with the end a of the zone, of length t/k, k^2 = 4 strength^2/(E h G). The work of
+    rupture counts (1 - c/strength) (t - sin t)/k of that zone, with cos t = -c/(strength - c)."""
+    thick, half, wide, toughness, strength, elements = 0.05, 0.5, 0.0125, 5e-8, 7e-4, 40
+    size = half / elements
+    notch, end, deflection, near = 0.375, 100.0, 0.0041, 1e-6
+    start = notch - 0.5 * size  # the first node of the bond stands for half an element before it
+
+    def arm(name: str, height: float, over: float) -> Scene:  # the lower one reaches beyond its support
+        return {"name": name, "corner": [-over, 0.0, height], "size": [2.0 * half + over, wide, thick],
+                "elements": [2 * elements + round(over / size), 1, 1],
+                "material": {"type": "linear", "young": 1.0, "poisson": 0.0, "density": 1.0}}  # fmt: skip
+
+    def row_at(along: float, height: float) -> Scene:
+        return {"box": [[along - near, -1.0, height - near], [along + near, 1.0, height + near]]}
+
+    def joint(name: str, law: str, first: float, last: float, parameters: Scene) -> Scene:
+        return {"name": name, "law": law, "against": {"surface": "low.z_max"}, "parameters": parameters,
+                "nodes": {"box": [[first - near, -1.0, -near], [last + near, 1.0, near]], "of": "up.z_min"}}  # fmt: skip
+
+    bond = {"strength": 5.0 * strength, "toughness": 25.0 * toughness, "strength_2": strength, "toughness_2": toughness}
+    scene = {
+        "title": "End-notched flexure",
+        "model": {"type": "blocks", "blocks": [arm("low", -thick, 4.0 * size), arm("up", 0.0, 0.0)]},
+        "time": {"cfl": 0.9, "end": end},
+        "loads": [{"type": "damping", "rate": 0.1},
+                  {"type": "motion", "nodes": row_at(0.0, -thick), "axes": [2]},
+                  {"type": "motion", "nodes": row_at(2.0 * half, -thick), "axes": [0, 2]},
+                  {"type": "motion", "name": "punch", "nodes": row_at(half, thick), "axes": [2],
+                   "path": {"rows": [[0.0, 0.0, 0.0, 0.0], [0.4 * end, 0.0, 0.0, -0.85 * deflection],
+                                     [end, 0.0, 0.0, -deflection]], "smooth": True}}],
+        "interfaces": [joint("bond", "cohesive", notch, 2.0 * half, bond),
+                       joint("crack", "contact", 0.0, notch - size, {})],
+        "output": {"every": 20, "watch": [], "forces": ["punch"], "balance": True},
+    }  # fmt: skip
+
+    def load(crack: float) -> float:
+        """The load at which a crack grows whose work of rupture is that of this length."""
+        shear = 0.0
+        for _ in range(50):
+            part = 0.75 * shear / (thick * strength)
+            angle = math.acos(-part / (1.0 - part))
+            counted = (1.0 - part) * (angle - math.sin(angle)) * math.sqrt(thick * toughness) / (2.0 * strength)
+            shear = math.sqrt((1.0 - 2.0 * part) * toughness * 4.0 * thick**3 / 9.0) / (crack - counted)
+        return 2.0 * wide * shear
+
+    def part_of_theory(found: Found) -> float:
+        cracks = start + found["balance.dissipated_rupture"] / (toughness * wide)
+        grows = (cracks > start + 0.03) & (cracks < half - 1.5 * thick)
+        return float(-found["punch.F2"][grows].mean() / np.vectorize(load)(cracks[grows]).mean())
+
+    return Case("end-notched flexure", "load of the growing crack over theory's", "beams with a zone that softens", scene,
+                1.0, part_of_theory, 2e-2)  # fmt: skip
+
+
 def turning_spring() -> Case:
     scene = json.loads((ROOT / "docs/results/scenes/rotating_spring.json").read_text(encoding="utf-8"))
     scene["time"]["end"], scene["output"]["every"] = 20.0, 1
@@ -369,6 +426,7 @@ CASES = [
     Case("double cantilever", "length of the crack [m]", "beam theory (Williams 1989)", HOST / "dcb_peel.json",
          (3.0 * 0.05**3 * 0.01**2 / (8.0 * 5e-8)) ** 0.25 - 0.605 * 0.05,
          lambda found: found.summary["energy"]["dissipated_rupture"] / (5e-8 * 0.0125), 2e-2),
+    end_notched(),
     Case("bar in mixed mode", "work of rupture [J]", "toughness (Benzeggagh and Kenane 1996)", HOST / "mixed_mode_bar.json",
          0.01 * (2e-6 + 6e-6 / 16.0), lambda found: found.summary["energy"]["dissipated_rupture"], 1e-9),
     Case("tape peeled upright", "upward less forward force [N]", "G b (Rivlin 1944), inertia and drag of the arm",
