@@ -3,9 +3,10 @@
 
 Usage: ILAW_PATH=build/release/lib/ilaw docs/results/dual_mortar.py build/release/bin/ilaw [--cases ...] [--sides ...]
 
-hertz     A parabolic face is pressed on a flat one, in plane strain, then sheared: rms of the errors of p(x) (Hertz 1882)
-          and q(x) (Cattaneo 1938, Mindlin 1949) over the largest pressure and traction. Half the width of contact has 12
-          elements in the lower body and 20 in the upper one.
+hertz     Two equal parabolic faces are pressed on each other, in plane strain, then sheared: rms of the errors of p(x)
+          (Hertz 1882) and q(x) (Cattaneo 1938, Mindlin 1949) over the largest pressure and traction, for the loads that act,
+          and the shear that is left from pressing over the limit of friction. --meshes: elements in half the width of
+          contact, in the lower body and the upper one.
 sliding   A block slides 1e5 steps over another without friction: change of its energy of motion, path, updates.
 bowl      An arc swings in a bowl without friction: against a rigid pendulum.
 bonds     Blocks that are glued by a law, in tension and in shear: the largest error of the traction.
@@ -28,7 +29,8 @@ from non_matching import block, interface, layers, material, write_mesh
 YOUNG, POISSON, RADIUS, FRICTION = 1e6, 0.3, 100.0, 0.3
 MODULUS = YOUNG / (2 * (1 - POISSON**2))  # E* of two equal bodies
 LENGTH, DEPTH, WIDTH = 10.0, 10.0, 1 / 12  # of a body: half its length, its depth; contact is a half width of 1
-HERTZ_ELEMENTS = 12, 20  # in a half width of contact, below and above
+CORE, GROWTH = (1.2, 0.4), 2.5  # half the length and the depth of equal steps; beyond them a step grows by this per path
+PRESSED, REST, SHEARED, END = 1.5, 3.0, 5.5, 7.0  # instants: the grips rest after pressing and after shearing
 FACES = {"a": "top", "b": "bottom"}
 
 
@@ -54,35 +56,34 @@ def brick(file, x, depth, height, sets):
     write_mesh(file, points, cells, {name: numpy.isin(node, node[k]) for name, k in sets.items()})
 
 
-def graded(first, core, end):
-    """From 0 on: equal steps up to a core, then growing ones."""
-    places = list(numpy.arange(0, core + 1e-9, first))
-    step = first
-    while places[-1] < end:
-        step *= 1.3
-        places.append(places[-1] + step)
-    return numpy.array(places)
+def graded(elements, core, end):
+    """From 0 to the end: steps of 1/elements up to a core, then geometric ones, of which a finer mesh has more."""
+    inner = numpy.arange(int(core * elements + 1e-9) + 1) / elements
+    path = math.log1p(GROWTH * (end - inner[-1])) / GROWTH
+    outer = numpy.linspace(0, path, round(path * elements) + 1)[1:]
+    return numpy.concatenate([inner, inner[-1] + numpy.expm1(GROWTH * outer) / GROWTH])
+
+
+def hertz_places(elements):
+    half = graded(elements, CORE[0], LENGTH)
+    return numpy.concatenate([-half[:0:-1], half]), graded(elements, CORE[1], DEPTH)
 
 
 def hertz_scene(folder, side, upper, lower):
-    meshes = []
-    for name, n in (("a", lower), ("b", upper)):
-        half = graded(1 / n, 1.2, LENGTH)
-        x = numpy.concatenate([-half[:0:-1], half])
-        depth = graded(1 / n, 0.4, DEPTH)
-        height = (lambda px, pz: -pz) if name == "a" else (lambda px, pz: pz + px * px / (2 * RADIUS) * max(0, 1 - pz / 5))
+    """Bodies of one shape, whose grips move alike: without friction no point of one face slips on the other."""
+    meshes, loads = [], [{"type": "motion", "nodes": "all", "axes": [1]}, {"type": "damping", "rate": 7}]
+    down, aside = 0.0075, 0.00125
+    for name, n, up in (("a", lower, -1), ("b", upper, 1)):
+        x, depth = hertz_places(n)
         file = folder / f"{name}.vtu"
-        brick(file, x, depth, height, {FACES[name]: 0, "grip": len(depth) - 1})
+        brick(file, x, depth, lambda px, pz: up * (pz + px * px / (4 * RADIUS) * max(0, 1 - pz / 5)),
+              {FACES[name]: 0, "grip": len(depth) - 1})
         meshes.append({"name": name, "file": str(file), "material": material(POISSON)})
+        path = [[0, 0, 0, 0], [PRESSED, 0, 0, -up * down], [REST, 0, 0, -up * down], [SHEARED, up * aside, 0, -up * down]]
+        loads.append({"type": "motion", "nodes": f"{name}.grip", "axes": [0, 2], "path": {"rows": path, "smooth": True}})
     joint = interface(side, FACES, "coulomb", {"friction": FRICTION})
-    down, aside = 0.014, 0.0025
-    return {"model": {"type": "solids", "meshes": meshes}, "interfaces": [joint], "time": {"cfl": 0.9, "end": 8},
-            "loads": [{"type": "motion", "nodes": "all", "axes": [1]}, {"type": "damping", "rate": 8},
-                      {"type": "motion", "nodes": "a.grip", "axes": [0, 2]},
-                      {"type": "motion", "nodes": "b.grip", "axes": [0, 2],
-                       "path": {"rows": [[0, 0, 0, 0], [1, 0, 0, -down], [3.5, 0, 0, -down], [6.5, aside, 0, -down]],
-                                "smooth": True}}],
-            "output": {"watch": ["a.top", "b.bottom"], "every": 50}}
+    return {"model": {"type": "solids", "meshes": meshes}, "interfaces": [joint], "time": {"cfl": 0.9, "end": END},
+            "loads": loads, "output": {"watch": ["a.top", "b.bottom"], "every": 50}}
 
 
 def of_hats(x, values):
@@ -96,41 +97,51 @@ def of_hats(x, values):
 
 
 def tractions(row, first, x, dt):
-    """Normal and tangential, over the inner nodes of a face."""
+    """Pressure and shear at the inner nodes of a face, positive along their sums, and the lengths that belong to them."""
     count = len(x)
     impulse = numpy.array([[sum(float(row[f"n{first + j * count + k}.r{c}"]) for j in (0, 1)) for c in (0, 2)]
-                           for k in range(count)])
-    return impulse[1:-1, 1] / (0.5 * (x[2:] - x[:-2]) * WIDTH * dt), impulse[1:-1, 0] / (0.5 * (x[2:] - x[:-2]) * WIDTH * dt)
+                           for k in range(count)])[1:-1]
+    lengths = 0.5 * (x[2:] - x[:-2])
+    shear, pressure = (impulse * numpy.sign(impulse.sum(0))).T / (lengths * WIDTH * dt)
+    return pressure, shear, lengths
 
 
-def hertz(program, side, profile=None):
-    lower, upper = HERTZ_ELEMENTS
+def closed_forms(x, force, shear):
+    """Half width of contact, stick zone over it, largest pressure, p(x) and q(x): of the loads that act."""
+    half = math.sqrt(4 * force * RADIUS / (math.pi * MODULUS))
+    sticks = math.sqrt(max(0.0, 1 - shear / (FRICTION * force)))
+    top = 2 * force / (math.pi * half)
+
+    def arc(width):
+        return top * of_hats(x, lambda s: numpy.sqrt(numpy.maximum(0, width**2 - (s / half)**2)))
+    return half, sticks, top, arc(1), FRICTION * (arc(1) - arc(sticks))
+
+
+def rms(values):
+    return math.sqrt((values**2).mean())
+
+
+def hertz(program, side, mesh="12:20", profile=None):
+    lower, upper = map(int, mesh.split(":"))
     summary, rows = run(program, lambda folder: hertz_scene(folder, side, upper, lower))
-    dt, first = summary["dt"], 0
+    first = 0
     for name, n in (("a", lower), ("b", upper)):
-        half = graded(1 / n, 1.2, LENGTH)
-        x, depth = numpy.concatenate([-half[:0:-1], half]), graded(1 / n, 0.4, DEPTH)
-        pressed = min(rows, key=lambda row: abs(float(row["time"]) - 3.4))
-        inside = numpy.abs(x[1:-1]) < 1.2
-        parts = []
-        for row in (pressed, rows[-1]):
-            p, q = (abs(t) for t in tractions(row, first, x, dt))
-            dx = 0.5 * (x[2:] - x[:-2])
-            force, shear = (p * dx).sum(), (q * dx).sum()
-            a = math.sqrt(4 * force * RADIUS / (math.pi * MODULUS))
-            c = a * math.sqrt(max(0.0, 1 - shear / (FRICTION * force)))
-            top = 2 * force / (math.pi * a)
-            exact_p = of_hats(x, lambda s: top * numpy.sqrt(numpy.maximum(0, 1 - (s / a)**2)))
-            exact_q = FRICTION * (exact_p - (c / a if c else 0) * of_hats(
-                x, lambda s: top * numpy.sqrt(numpy.maximum(0, 1 - (s / max(c, 1e-9))**2))))
-            parts.append((math.sqrt(((p - exact_p)[inside]**2).mean()) / top,
-                          math.sqrt(((q - exact_q)[inside]**2).mean()) / max(exact_q.max(), 1e-9), a, shear / (FRICTION * force)))
-            if profile is not None and row is pressed:
-                profile[name] = (x[1:-1][inside] / a, p[inside] / top)
-        print(f"| hertz | {side} | body {name} | p rms {parts[0][0]:.1e} | q rms {parts[1][1]:.1e} | a {parts[0][2]:.3f} | "
-              f"Q/(mu F) {parts[1][3]:.2f} | iterations {summary['coupling']['sweeps'] / summary['steps']:.0f} | "
-              f"unsolved {summary['coupling']['steps_unconverged']} of {summary['steps']} | "
-              f"{summary['seconds']['interfaces'] / summary['seconds']['total']:.2f} of the time |", flush=True)
+        x, depth = hertz_places(n)
+        inside = numpy.abs(x[1:-1]) < CORE[0]
+        pressed = max((row for row in rows if float(row["time"]) <= REST), key=lambda row: float(row["time"]))
+        p, q, lengths = tractions(pressed, first, x, summary["dt"])
+        half, _, top, exact_p, _ = closed_forms(x, p @ lengths, 0)
+        errors = [rms((p - exact_p)[inside]) / top, rms(q[inside]) / (FRICTION * top)]
+        if profile is not None:
+            profile[name] = (x[1:-1][inside] / half, p[inside] / top)
+        p, q, lengths = tractions(rows[-1], first, x, summary["dt"])
+        force, shear = p @ lengths, q @ lengths
+        half, sticks, _, _, exact_q = closed_forms(x, force, shear)
+        errors.append(rms((q - exact_q)[inside]) / exact_q.max())
+        print(f"| hertz | {side} | {mesh} | body {name} | p rms {errors[0]:.1e} | q rms {errors[2]:.1e} | q from pressing "
+              f"{errors[1]:.1e} | a {half:.3f} | c/a {sticks:.3f} | Q/(mu F) {shear / (FRICTION * force):.3f} | iterations "
+              f"{summary['coupling']['sweeps'] / summary['steps']:.0f} | unsolved {summary['coupling']['steps_unconverged']} of "
+              f"{summary['steps']} |", flush=True)
         first += 2 * len(x) * len(depth)
 
 
@@ -326,7 +337,7 @@ def picture(program, file):
     axes.plot(s, numpy.sqrt(1 - s**2), "k", lw=1, label="exact")
     for side, marker, color, text in (("fine", "x", "C3", "one side"), ("dual coarse", "o", "C0", "dual weights")):
         profile = {}
-        hertz(program, side, profile)
+        hertz(program, side, profile=profile)
         for body, values in profile.items():
             axes.plot(*values, marker, ms=4, color=color, fillstyle="none", label=text if body == "a" else None)
     axes.set_xlabel("x over half the width of contact")
@@ -343,13 +354,15 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--cases", nargs="+", default=list(CASES), choices=CASES)
     parser.add_argument("--sides", nargs="+", default=["dual fine", "dual coarse", "fine"], choices=non_matching.SIDES)
+    parser.add_argument("--meshes", nargs="+", default=["12:20"], help="of hertz")
     parser.add_argument("--picture", type=Path)
     options = parser.parse_args()
     if options.picture:
         return picture(options.program, options.picture)
     for case in options.cases:
         for side in options.sides:
-            CASES[case](options.program, side)
+            for mesh in options.meshes if case == "hertz" else [None]:
+                CASES[case](options.program, side, *([mesh] if mesh else []))
 
 
 if __name__ == "__main__":
