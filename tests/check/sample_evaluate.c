@@ -59,6 +59,8 @@ static int lacks_spins(const ilaw_instance* made, const ilaw_batch* b) {
          (!breaks("array-numbers: spins") && lacks(made, a.after.values, a.after.floats, 0));
 }
 
+static int is_flat(const ilaw_input* a) { return (a->values || a->floats) && a->component_stride == 0; }
+
 static const char* wrong_arrays(const ilaw_instance* made, const ilaw_batch* b) {
   const spin_arrays spins = spins_of(b);
   const int global = made->setup.frame == ILAW_FRAME_GLOBAL,
@@ -79,6 +81,9 @@ static const char* wrong_arrays(const ilaw_instance* made, const ilaw_batch* b) 
       lacks(made, b->velocity.values, b->velocity.floats, 0) ||
       lacks(made, b->energy.values, b->energy.floats, 0))
     return "an output is missing or of another number type";
+  if (made->setup.dimension > 1 &&
+      (is_flat(&b->v_free) || is_flat(&b->v_previous) || (global && is_flat(&b->normal))))
+    return "a vector has one component per node";
   if (lacks_spins(made, b)) return "an array of spins is missing or of another number type";
   for (k = 0; b->amounts && k < AMOUNT_COUNT && !breaks("array-numbers: amount"); ++k)
     if (lacks(made, b->amounts[k].values, b->amounts[k].floats, 0))
