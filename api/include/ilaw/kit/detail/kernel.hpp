@@ -308,13 +308,17 @@ struct kernel {
 
   // The frame of an accepted step becomes the one to carry on from, unless the step left all as it was: a
   // frame that moved on alone would make skipping such a node, which its host may do out of reach, another
-  // motion.
+  // motion. Whether v_smooth reaches the surface does not count: with other parameters the law may not ask
+  // for it, and a value per node must give the bits of the constant.
   ILAW_KIT_INLINE static void store_frame(const loaded& p, const view_type& b, std::int64_t i,
                                           status_of<V> status, mask accepted) {
     if constexpr (can_carry) {
       if (b.tangents_from != tangents::carried) return;
       mask changed = !(sum_of_sizes(p.node.impulse) + status.code() == 0.0);
-      if constexpr (reads<Law>(reads_gap)) changed = changed | !is_out_of_reach(p.node);
+      if constexpr (reads<Law>(reads_gap)) {
+        const V next = p.node.gap + p.node.position_step * p.node.v_free.n;
+        changed = changed | !((p.node.gap > 0.0) & (next > 0.0));
+      }
       if constexpr (states > 0) {
         state_type before;
         load_state(before, b, i);
