@@ -87,7 +87,10 @@ std::string judged(const std::string& file, const std::string& law, const Rule& 
 
 Outcome outcome_of(const std::string& law, const Rule& rule, const Ending& ending) {
   Outcome outcome{law, rule.id, Verdict::passed, {}, {}};
-  if (!ending.returned) {
+  if (ending.late) {
+    outcome.verdict = Verdict::not_judged;
+    outcome.why = "took longer than the limit of time";
+  } else if (!ending.returned) {
     outcome.verdict = Verdict::broken;
     const std::string call = ending.call.empty() ? "the library" : ending.call;
     outcome.finding = {call + " " + ending.how, "that it returns", ending.setting, {}};
@@ -153,7 +156,7 @@ Outcome shrunken(Outcome found, const std::string& file, const std::string& law,
 Outcome judge_apart(const std::string& file, const std::string& law, const Rule& rule,
                     const Options& options) {
   Outcome outcome = judge_with(options.seeds.at(0), file, law, rule, options);
-  for (std::size_t k = 1; k < options.seeds.size() && rule.follows_motion; ++k) {
+  for (std::size_t k = 1; k < options.seeds.size() && rule.needs == Needs::motion; ++k) {
     if (outcome.verdict == Verdict::broken) break;
     Outcome next = judge_with(options.seeds[k], file, law, rule, options);
     next.seconds += outcome.seconds;

@@ -19,7 +19,7 @@ namespace ilaw::check {
 struct Options {
   std::string law;                // empty: all of the library
   std::vector<std::string> only;  // ids of rules; empty: all
-  // Rules that follow random motions are judged with all seeds, others with the first.
+  // Rules that move nodes are judged with all seeds, others with the first.
   std::vector<std::uint64_t> seeds{1, 2, 3};
   std::optional<Values> parameters;  // of every instance of the law, instead of drawn ones
   Limits limits;                     // of a rule, a law and a seed

@@ -111,7 +111,9 @@ std::function<int()> add_options(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--parameters", line->parameters,
                      "Parameters instead of drawn ones: a JSON object, or a file with one");
-  command.add_option("--limit", line->check.limits.seconds, "Seconds for each rule and law")
+  command
+      .add_option("--limit", line->check.limits.seconds,
+                  "Seconds of the processor for each rule and law, and for a call")
       ->check(within(0.1, 3600.0))
       ->capture_default_str();
   command

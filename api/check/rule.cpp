@@ -37,16 +37,12 @@ bool look_at_trials(const Subject& subject, const Look& look) {
 const std::vector<Rule>& rules() {
   static const std::vector<Rule> all = [] {
     std::vector<Rule> made;
-    const auto add = [&made](const std::vector<Rule>& part, bool follows_motion) {
-      for (Rule rule : part) {
-        rule.follows_motion = follows_motion;
-        made.push_back(rule);
-      }
-    };
     for (const auto part : {description_rules, parameter_rules, setup_rules, call_rules, purity_rules,
-                            independence_rules, memory_rules, quiet_rules, float_rules, bad_input_rules})
-      add(part(), false);
-    for (const auto part : {state_rules, result_rules, energy_rules, symmetry_rules}) add(part(), true);
+                            independence_rules, memory_rules, quiet_rules, float_rules, bad_input_rules,
+                            state_rules, result_rules, energy_rules, symmetry_rules}) {
+      const std::vector<Rule> rules_of_part = part();
+      made.insert(made.end(), rules_of_part.begin(), rules_of_part.end());
+    }
     return made;
   }();
   return all;

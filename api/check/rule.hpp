@@ -35,7 +35,6 @@ struct Rule {
   const char* source;
   Needs needs;
   void (*judge)(const Subject& subject);
-  bool follows_motion = false;  // judges results of random motions, which differ from seed to seed
 };
 
 // The three that others need: Needs::library, instance and motion.

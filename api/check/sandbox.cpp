@@ -11,11 +11,15 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <thread>
 
@@ -42,6 +46,7 @@ constexpr std::size_t most_result = 1U << 18, most_printed = 2000, most_written 
 // Memory that the child leaves for its parent, however the child ends.
 struct Shared {
   std::array<char, 64> call;
+  std::atomic<std::size_t> calls;
   std::array<char, 160> what;
   std::array<char, 2048> setting;
   bool returned;
@@ -124,7 +129,7 @@ std::size_t bytes_of_address_space() {
 
 void set_limits(const Limits& limits) {
   limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, static_cast<rlim_t>(limits.seconds) + 2);
+  limit(RLIMIT_CPU, static_cast<rlim_t>(2.0 * limits.seconds) + 10);  // in case the parent is late
   limit(RLIMIT_FSIZE, most_written);
   if (!is_instrumented) limit(RLIMIT_AS, bytes_of_address_space() + limits.megabytes * (1U << 20));
 }
@@ -150,21 +155,78 @@ void set_limits(const Limits& limits) {
   _exit(0);
 }
 
-// False where the child had to be ended.
-bool wait_for(pid_t child, double seconds, int& status) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+double seconds_on(clockid_t clock) {
+  timespec time{};
+  return clock_gettime(clock, &time) == 0
+             ? static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec)
+             : 0.0;
+}
+
+double processor_time_of(pid_t child) {
+  clockid_t clock{};
+  return clock_getcpuclockid(child, &clock) == 0 ? seconds_on(clock) : 0.0;
+}
+
+// Not so where a thread is ready and gets no processor, or waits for a disk.
+bool all_threads_sleep(pid_t child) {
+  std::error_code none;
+  for (const auto& task :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(child) + "/task", none)) {
+    std::string text;
+    std::getline(std::ifstream(task.path() / "stat"), text);
+    const std::size_t state = text.rfind(") ");
+    if (state == std::string::npos || text.compare(state, 3, ") S") != 0) return false;
+  }
+  return true;
+}
+
+enum class Waiting { goes_on, hangs, too_long };
+
+// How a child gets on by the time that it has a processor: one call may take all of the limit, and so may
+// all calls together. A call that sleeps has no processor, and is timed by the clock.
+class ChildWatch {
+ public:
+  ChildWatch(pid_t child, double seconds, const Shared& left)
+      : child_(child), seconds_(seconds), left_(left) {}
+
+  Waiting look() {
+    const double now = seconds_on(CLOCK_MONOTONIC), used = processor_time_of(child_);
+    const std::size_t calls = left_.calls;
+    const bool is_next = calls != calls_;
+    if (is_next) calls_ = calls, used_before_ = used;
+    if (is_next || used > used_ + least) used_ = used, awake_ = now;
+    if (is_next && used > seconds_) return Waiting::too_long;
+    if (used - used_before_ > seconds_) return Waiting::hangs;
+    if (now - awake_ > seconds_ && all_threads_sleep(child_)) return Waiting::hangs;
+    return now - begin_ > most_waiting * seconds_ ? Waiting::too_long : Waiting::goes_on;
+  }
+
+ private:
+  static constexpr double least = 1e-3, most_waiting = 60.0;
+
+  const pid_t child_;
+  const double seconds_, begin_ = seconds_on(CLOCK_MONOTONIC);
+  const Shared& left_;
+  std::size_t calls_ = 0;
+  double used_before_ = 0.0, used_ = 0.0, awake_ = begin_;
+};
+
+// Anything but goes_on: the child had to be ended.
+Waiting wait_for(pid_t child, ChildWatch watch, int& status) {
   auto pause = std::chrono::microseconds(100);
+  Waiting waiting = Waiting::goes_on;
   for (;;) {
     const pid_t ended = waitpid(child, &status, WNOHANG);
-    if (ended == child || (ended < 0 && errno != EINTR)) return true;
-    if (std::chrono::steady_clock::now() > end) break;
+    if (ended == child || (ended < 0 && errno != EINTR)) return Waiting::goes_on;
+    waiting = watch.look();
+    if (waiting != Waiting::goes_on) break;
     std::this_thread::sleep_for(pause);
     pause = std::min(pause * 3 / 2, std::chrono::microseconds(5000));
   }
   kill(-child, SIGKILL);
   kill(child, SIGKILL);
   waitpid(child, &status, 0);
-  return false;
+  return waiting;
 }
 
 std::string read_printed(int output) {
@@ -187,8 +249,10 @@ std::string how_it_ended(bool in_time, int status, double seconds) {
   return text.data();
 }
 
-Ending ending_of(const Shared& left, bool in_time, int status, double seconds) {
+Ending ending_of(const Shared& left, Waiting waiting, int status, double seconds) {
+  const bool in_time = waiting == Waiting::goes_on;
   Ending ending;
+  ending.late = waiting == Waiting::too_long;
   ending.returned = in_time && left.returned;
   ending.result.assign(left.result.data(), left.size);
   if (!ending.returned)
@@ -213,9 +277,9 @@ Ending run_apart(const Limits& limits, const std::function<std::string()>& work)
     run_child(limits, output, work);
   }
   int status = 0;
-  const bool in_time = wait_for(child, limits.seconds, status);
+  const Waiting waiting = wait_for(child, ChildWatch(child, limits.seconds, *own), status);
   kill(-child, SIGKILL);  // what the library may have started
-  Ending ending = ending_of(*own, in_time, status, limits.seconds);
+  Ending ending = ending_of(*own, waiting, status, limits.seconds);
   ending.printed = read_printed(output);
   close(output);
   munmap(room, sizeof(Shared));
@@ -223,7 +287,9 @@ Ending run_apart(const Limits& limits, const std::function<std::string()>& work)
 }
 
 void calling(const char* function) {
-  if (shared) put(shared->call, function);
+  if (!shared) return;
+  put(shared->call, function);
+  ++shared->calls;
 }
 
 void set_setting(const std::string& text) {

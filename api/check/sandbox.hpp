@@ -8,6 +8,7 @@
 
 namespace ilaw::check {
 
+// Seconds of the processor: a busy machine makes a law slow, but breaks no rule.
 struct Limits {
   double seconds = 10.0;
   std::size_t megabytes = 1024;  // beside what the program has
@@ -16,6 +17,7 @@ struct Limits {
 // How work in a child process ended.
 struct Ending {
   bool returned = false;
+  bool late = false;    // call after call returned, until the time was over
   std::string result;   // what the work returned
   std::string how;      // else: "was ended by SIGSEGV", "ended the process with exit code 3"
   std::string call;     // the function of the library that ran last

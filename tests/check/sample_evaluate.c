@@ -152,6 +152,11 @@ static void misbehave(const ilaw_batch* b, int rough) {
   if (breaks("functions-return")) *nowhere = 1;
   if (breaks("hang"))
     for (;;) ++counter;
+  if (breaks("pause"))
+    for (;;) pause();
+  if (breaks("naps")) usleep(2000);
+  if (breaks("slow"))
+    for (clock_t end = clock() + CLOCKS_PER_SEC / 100; clock() < end;) ++counter;
   if (breaks("exit")) exit(3);
   if (breaks("quiet exit")) _exit(0);
   if (breaks("abort")) abort();
