@@ -70,7 +70,7 @@ TEST(Mujoco, MovesAsMjStepWithoutContact) {
   EXPECT_LT(std::abs(ours.data->qpos[0]), 1.2) << "the limit is not reached";
 }
 
-// A fall is a parabola at any step, and a bond takes half the impulse of a pull in the starting half kick.
+// A fall is a parabola at any step, and a ball at rest is carried for half a step in the starting half kick.
 TEST(Mujoco, StartsWithHalfKick) {
   for (const double h : steps) {
     const Scene at = scene(ball(2.0), h), held = scene(ball(0.1), h);
