@@ -72,7 +72,8 @@ stepper::stepper(const mjModel* model, const std::string& law, parameters law_pa
   for (std::vector<double>* array : {&v_before_, &force_}) array->resize(nv);
 }
 
-ilaw_coupled_report stepper::step(mjData* data) {
+ilaw_coupled_report stepper::kick_and_move(mjData* data, double kick) {
+  kick_ = kick;
   std::copy_n(data->qvel, model_->nv, v_before_.begin());
   advance_without_contact(data);
   find_contacts(data);
@@ -107,11 +108,11 @@ void stepper::advance_without_contact(mjData* data) {
   mj_fwdConstraint(m, data);
   std::copy_n(data->qacc, m->nv, data->qacc_warmstart);
   // Damping of joints is implicit, as in mj_Euler: (M + h D) (v_free - v) = h f. Contacts see M + h D, too.
-  for (int i = 0; i < m->nv; ++i) data->qM[m->dof_Madr[i]] += m->opt.timestep * m->dof_damping[i];
+  for (int i = 0; i < m->nv; ++i) data->qM[m->dof_Madr[i]] += kick_ * m->dof_damping[i];
   mj_factorM(m, data);
   mju_add(force_.data(), data->qfrc_smooth, data->qfrc_constraint, m->nv);
   mj_solveM(m, data, data->qacc, force_.data(), 1);
-  mju_addToScl(data->qvel, data->qacc, m->opt.timestep, m->nv);
+  mju_addToScl(data->qvel, data->qacc, kick_, m->nv);
 }
 
 void stepper::find_contacts(mjData* data) {
@@ -207,7 +208,8 @@ ilaw_batch stepper::batch(const mjData* data) {
   made.struct_size = sizeof made;
   made.node_count = static_cast<std::int64_t>(contacts_.count());
   made.time = data->time;
-  made.velocity_step = made.position_step = model_->opt.timestep;
+  made.velocity_step = kick_;
+  made.position_step = model_->opt.timestep;
   made.gap = input(contacts_.gap.data(), 1, 0);
   made.area = input(&given_.area, 0, 0);
   made.normal = input(contacts_.normal.data(), 3, 1);
@@ -281,10 +283,10 @@ void stepper::apply_impulses(mjData* data) {
     mju_addTo(force_.data(), generalized.data(), model_->nv);
   }
   // Constraint forces and accelerations with the contacts, for those who read them.
-  mju_addToScl(data->qfrc_constraint, force_.data(), 1.0 / model_->opt.timestep, model_->nv);
+  mju_addToScl(data->qfrc_constraint, force_.data(), 1.0 / kick_, model_->nv);
   mj_solveM(model_, data, force_.data(), force_.data(), 1);
   mju_addTo(data->qvel, force_.data(), model_->nv);
-  mju_addToScl(data->qacc, force_.data(), 1.0 / model_->opt.timestep, model_->nv);
+  mju_addToScl(data->qacc, force_.data(), 1.0 / kick_, model_->nv);
 }
 
 void stepper::move(mjData* data) const {

@@ -50,13 +50,19 @@ class stepper {
   // As mj_step with the integrator Euler, but contacts have the law. Joint limits, equality constraints and
   // friction in joints are forces of MuJoCo that act before the contacts. Throws ilaw::error where a contact
   // has bad input.
-  ilaw_coupled_report step(mjData* data);
+  ilaw_coupled_report step(mjData* data) { return kick_and_move(data, model_->opt.timestep); }
+
+  // The first step of a run whose velocities are those of time 0: half a kick, in which the law acts, and a
+  // whole move. Positions are then of second order in the step; `step` takes the velocities at half a step
+  // before.
+  ilaw_coupled_report start(mjData* data) { return kick_and_move(data, 0.5 * model_->opt.timestep); }
 
   // The contacts of the last step, to store and to go on from.
   const std::vector<contact_memory>& memory() const { return memory_; }
   void recall(std::vector<contact_memory> memory) { memory_ = std::move(memory); }
 
  private:
+  ilaw_coupled_report kick_and_move(mjData* data, double kick);
   void advance_without_contact(mjData* data);
   void find_contacts(mjData* data);
   void add_contact(mjData* data, const mjContact& contact);
@@ -78,6 +84,7 @@ class stepper {
   contact_arrays contacts_;
   ilaw_input friction_input_{};
   std::vector<double> v_before_, force_;
+  double kick_ = 0.0;  // duration of the current one: the velocity step of the law [s]
 };
 
 }  // namespace ilaw::mujoco

@@ -70,6 +70,19 @@ TEST(Mujoco, MovesAsMjStepWithoutContact) {
   EXPECT_LT(std::abs(ours.data->qpos[0]), 1.2) << "the limit is not reached";
 }
 
+// A fall is a parabola at any step, and a ball at rest is carried for half a step in the starting half kick.
+TEST(Mujoco, StartsWithHalfKick) {
+  for (const double h : steps) {
+    const Scene at = scene(ball(2.0), h), held = scene(ball(0.1), h);
+    stepper falls = with(at, "contact", {}), lies = with(held, "contact", {});
+    falls.start(at.data.get());
+    lies.start(held.data.get());
+    EXPECT_NEAR(lies.memory().at(0).impulse[2], 2 * g * h / 2, 1e-12);
+    for (int n = 1; n < 100; ++n) falls.step(at.data.get());
+    EXPECT_NEAR(at.data->qpos[2], 2.0 - g / 2 * std::pow(at.data->time, 2), 1e-12);
+  }
+}
+
 // A ball falls by 1 and rises by e^2.
 TEST(Mujoco, BouncesToSquareOfRestitution) {
   for (const double h : steps) {

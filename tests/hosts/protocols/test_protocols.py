@@ -179,8 +179,59 @@ def impulses(protocol, v):
     return p.mass * (v - p.velocity) - p.step * (p.steps + 0.5) * np.array(p.force)
 
 
+def mujoco(protocol, folder):
+    """A sphere on three slide joints, which does not turn."""
+    program = BUILD / "bin/protocol_mujoco"
+    if not program.exists():
+        pytest.skip("not installed")
+    if any(protocol.wall):
+        pytest.skip("fixed walls")
+    if protocol.law == "grain":
+        pytest.skip("full H")
+    return by_program(program, protocol, folder)
+
+
+@functools.cache
+def dolfinx_block():
+    """A cube whose nodes at the plane have the area 1 each; without any stiffness UFL would find no integral."""
+    try:
+        from block import Block, box
+    except ImportError:
+        return None
+    return Block(box([2.0, 2.0, 2.0], [1, 1, 1], "hexahedra"), young=1e-30, cache=tempfile.mkdtemp())
+
+
+def dolfinx(protocol, folder):
+    """The block of the example, whose nodes move as points do."""
+    p, block = protocol, dolfinx_block()
+    if block is None:
+        pytest.skip("not installed")
+    if p.restart:
+        pytest.skip("no restart")
+    from throw import Throw
+
+    class Points(Throw):
+        sum = np.zeros(3)
+
+        def loads(self):
+            return np.array(p.force) - np.array(p.stiffness) * self.block.u
+
+        def kick(self, forces, duration):
+            super().kick(forces, duration)
+            self.sum = self.sum + self.contact.impulse[0]
+
+    block.u[:], block.mass[:] = 0.0, p.mass
+    throw = Points(block, p.law, p.step, p.position[2], p.velocity, parameters=p.parameters, plane=p.wall)
+    for _ in range(p.steps):
+        throw.step()
+    node, *others = throw.nodes
+    assert len(others) == 3 and np.ptp(block.u[throw.nodes], axis=0).max() <= protocols.SAME * np.abs(block.u).max()
+    return np.concatenate([block.u[node], block.v[node], throw.sum])
+
+
 HOSTS = {"ilaw run": ilaw_run, "minimal, C++": minimal, "C": in_c, "Fortran": in_fortran, "Python": in_python,
-         "OpenRadioss (its cycle)": openradioss, "LAMMPS": lammps, "Yade": yade}  # fmt: skip
+         "OpenRadioss (its cycle)": openradioss, "LAMMPS": lammps, "Yade": yade, "MuJoCo": mujoco,
+         "dolfinx": dolfinx}  # fmt: skip
 
 
 @pytest.mark.parametrize("protocol", CASES, ids=lambda case: case.name)

@@ -32,7 +32,7 @@ class Rival(Throw):
     def __init__(self, block, h):
         super().__init__(block, "coulomb", h, velocity=VELOCITY)
 
-    def apply_law(self, before):
+    def apply_law(self, before, duration):
         block, nodes = self.block, self.nodes
         mass = block.mass[nodes]
         np.add(block.u[nodes, 2], self.height, out=self.gap)

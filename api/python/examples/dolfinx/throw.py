@@ -24,19 +24,20 @@ PARAMETERS = {
 
 
 class Throw:
-    """Central differences with a law between the lower side of a block and the plane z = -gap.
+    """Central differences with a law between the lower side of a block and the plane z = -gap, which moves by `plane`.
 
     The law sees the owned nodes of that side, in arrays of their own; a rank may have none.
     """
 
-    def __init__(self, block, law, h, gap=0.013, velocity=(0.5, 0.0, -1.0), pull=0.0, after=0.3):
-        self.block, self.h, self.pull, self.after = block, h, pull, after
+    def __init__(self, block, law, h, gap=0.013, velocity=(0.5, 0.0, -1.0), pull=0.0, after=0.3, parameters=None,
+                 plane=(0.0, 0.0, 0.0)):  # fmt: skip
+        self.block, self.h, self.pull, self.after, self.plane = block, h, pull, after, np.array(plane)
         self.nodes, area = block.facet(axis=2, end="low")
         self.lift = block.facet(axis=0, end="high")[1]  # [m^2], of the side that is pulled
         count = len(self.nodes)
         self.v_nodes, self.v_before, self.gap = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros(count)
         self.height = block.x[self.nodes, 2] + gap
-        interface = ilaw.Interface(law, velocity_step=h, **PARAMETERS[law])
+        interface = ilaw.Interface(law, position_step=h, **(PARAMETERS[law] if parameters is None else parameters))
         self.contact = interface.batch(
             v_free=self.v_nodes,
             v_previous=self.v_before,
@@ -50,8 +51,8 @@ class Throw:
         block.v[:] = velocity
         self.steps, self.seconds_of_law = 0, 0.0
         self.works = np.zeros(3)  # of internal forces, the pull and the law, on this rank
-        self.force = np.zeros_like(block.v)
-        self.start = self.kinetic()  # the energy that errors are relative to
+        self.outside = np.zeros_like(block.v)
+        self.start = self.kinetic() or 1.0  # the energy that errors are relative to
         self.balance = self.identity = self.approach = 0.0
 
     def kinetic(self):
@@ -59,41 +60,51 @@ class Throw:
         return 0.5 * self.block.sum(np.einsum("i,ij,ij->", self.block.mass, self.block.v, self.block.v))[0]
 
     def step(self):
-        block, h, v = self.block, self.h, self.block.v
+        block = self.block
+        if self.steps == 0:
+            self.kick(block.forces(), 0.5 * self.h)  # velocities are those of the half steps from here on
         u_before = block.u.copy()
-        block.u += h * v
+        block.u += self.h * block.v
         forces = block.forces()
         self.check_energy(u_before, forces)
-        self.force[:] = -forces
         self.steps += 1
-        pull = self.pull * max(self.steps * h - self.after, 0.0)
-        self.force[self.sides, 2] += pull * self.lift[self.sides]
+        self.kick(forces, self.h)
+
+    def loads(self):
+        """Forces from outside at the time of the positions."""
+        pull = self.pull * max(self.steps * self.h - self.after, 0.0)
+        self.outside[self.sides, 2] = pull * self.lift[self.sides]
+        return self.outside
+
+    def kick(self, forces, duration):
+        v, loads = self.block.v, self.loads()
         before = v.copy()
-        v += h / block.mass[:, None] * self.force
+        v += duration / self.block.mass[:, None] * (loads - forces)
 
         began = time.process_time()
-        self.apply_law(before)
+        self.apply_law(before, duration)
         self.seconds_of_law += time.process_time() - began
 
         mean = 0.5 * (v + before)
         self.works += [
-            -h * np.vdot(forces, mean),
-            h * pull * np.vdot(self.lift, mean[:, 2]),
+            -duration * np.vdot(forces, mean),
+            duration * np.vdot(loads, mean),
             np.vdot(self.contact.impulse, mean[self.nodes]),
         ]
 
-    def apply_law(self, before):
+    def apply_law(self, before, duration):
         """v of the nodes at the plane is the velocity without the interface, then with it."""
         block, nodes = self.block, self.nodes
-        np.take(block.v, nodes, axis=0, out=self.v_nodes)
-        np.take(before, nodes, axis=0, out=self.v_before)
-        np.add(block.u[nodes, 2], self.height, out=self.gap)
-        self.contact.evaluate(time=self.steps * self.h)
+        now = self.steps * self.h
+        np.subtract(block.v[nodes], self.plane, out=self.v_nodes)
+        np.subtract(before[nodes], self.plane, out=self.v_before)
+        np.add(block.u[nodes, 2], self.height - now * self.plane[2], out=self.gap)
+        self.contact.evaluate(time=now, velocity_step=duration)
         block.v[nodes] += self.contact.impulse / block.mass[nodes, None]
         # Promised of nodes that are not free: v_N >= -gap/h where the gap is open, else 0, and no less than the
         # reverse of the speed with which a node was leaving (docs of the law contact).
         promise = -np.maximum(np.maximum(self.gap, 0.0) / self.h, self.v_before[:, 2])
-        broken = np.where(self.contact.status, promise - block.v[nodes, 2], 0.0)
+        broken = np.where(self.contact.status, promise + self.plane[2] - block.v[nodes, 2], 0.0)
         self.approach = max(self.approach, broken.max(initial=0.0))
 
     def check_energy(self, u_before, forces):
