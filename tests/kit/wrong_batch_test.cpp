@@ -16,14 +16,12 @@ TEST(WrongBatch, FlatVectorsAreRefused) {
     ilaw_input ilaw_batch::*vector;
   } vectors[] = {{"v_free", &ilaw_batch::v_free},
                  {"v_previous", &ilaw_batch::v_previous},
-                 {"v_smooth", &ilaw_batch::v_smooth},
                  {"normal", &ilaw_batch::normal}};
   for (const std::uint32_t d : {1U, 2U, 3U}) {
     const ilaw::interface law = make_law(
         "coulomb", SetupBuilder({{{"friction", 0.5}}, {}}, d, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL));
     const double normal[] = {1.0, 0.0, 0.0};
     SmallBatch nodes(2, {-1.0, 0.0, 0.0});
-    nodes.b.v_smooth = nodes.b.v_free;
     nodes.b.normal = ilaw::input(normal, 0, 1);
     EXPECT_EQ(law.evaluate(nodes.b), ILAW_OK);
     for (const auto& [name, vector] : vectors) {
@@ -31,7 +29,7 @@ TEST(WrongBatch, FlatVectorsAreRefused) {
       (b.*vector).component_stride = 0;
       EXPECT_EQ(law.evaluate(b, &nodes.report), d == 1 ? ILAW_OK : ILAW_INVALID_ARGUMENT) << name << d;
       if (d > 1) {
-        EXPECT_EQ(nodes.report.reason, name + std::string(tail));
+        ASSERT_STREQ(nodes.report.reason, (name + std::string(tail)).c_str());
       }
     }
   }
