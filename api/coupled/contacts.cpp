@@ -351,10 +351,7 @@ std::int32_t Contacts::evaluate(const Block& block, const Call& call, ilaw_repor
     batch.moment = ilaw::output(call.impulse + 3 * max_stride, 1, max_stride);
   }
   if (call.energy) batch.energy = ilaw::output(call.energy, 1, max_stride);
-  std::vector<ilaw_output> amounts;
-  for (std::uint32_t a = 0; call.amounts && a < info_.amount_count; ++a)
-    amounts.push_back(ilaw::output(call.amounts + a * max_stride, 1, 0));
-  if (!amounts.empty()) batch.amounts = amounts.data();
+  batch.amounts = call.amounts;
   if (call.status && (given_.law->outputs & ILAW_OUTPUT_STATUS)) batch.status = call.status;
   batch.status_stride = 1;
   report = {};

@@ -66,9 +66,9 @@ class Contacts {
     double* impulse;              // columns at distances of max_stride
     double* state_out = nullptr;  // as the block's columns; null: the block's own
     std::uint8_t* status = nullptr;
-    double* energy = nullptr;   // ILAW_ENERGY_COUNT columns at distances of max_stride
-    double* amounts = nullptr;  // as many columns as the law has amounts
-    bool judges = false;        // the law decides whether a bond holds that has not broken in this step
+    double* energy = nullptr;              // ILAW_ENERGY_COUNT columns at distances of max_stride
+    const ilaw_output* amounts = nullptr;  // as many as the law has
+    bool judges = false;  // the law decides whether a bond holds that has not broken in this step
   };
   std::int32_t evaluate(const Block& block, const Call& call, ilaw_report& report) const;
 

@@ -3,6 +3,8 @@
 
 #include "sizes.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -95,8 +97,9 @@ const char* Solver::open(const ilaw_bodies* bodies, const ilaw_contacts* const* 
 }
 
 // Outputs that begin at the same number, and outputs of contacts that are an input of the bodies.
-const char* Solver::complaint_of_overlaps(const ilaw_bodies& bodies) const {
-  std::vector<const double*> outputs;
+const char* Solver::complaint_of_overlaps(const ilaw_bodies& bodies) {
+  std::vector<const double*>& outputs = outputs_;
+  outputs.clear();
   for (std::size_t g = 0; g < problem_.group_count; ++g) problem_.groups[g].add_outputs(outputs);
   for (const ilaw_input* a : {&bodies.v_free, &bodies.spin_free, &bodies.v_previous, &bodies.inverse_mass})
     if (a->values && std::find(outputs.begin(), outputs.end(), a->values) != outputs.end())
@@ -301,7 +304,6 @@ std::int32_t Solver::evaluate_balance(ilaw_coupled_report& report) {
   balance_.clear();
   Columns v_free{}, answer{};
   std::array<std::uint8_t, max_stride> status{};
-  std::vector<double> state;
   for (Block& block : blocks_.list()) {
     const Contacts& group = problem_.group(block);
     if (!group.asks_balance()) continue;
@@ -311,16 +313,19 @@ std::int32_t Solver::evaluate_balance(ilaw_coupled_report& report) {
                   v_free.data() + static_cast<std::size_t>(c) * max_stride);
     const std::size_t columns = ILAW_ENERGY_COUNT + group.amount_count(), at = balance_.size();
     balance_.resize(at + columns * max_stride);
-    state.resize(block.stride * static_cast<std::size_t>(layout.state_size) + 1);
+    balance_state_.resize(block.stride * static_cast<std::size_t>(layout.state_size) + 1);
     double* energy = balance_.data() + at;
+    amounts_.clear();
+    for (std::size_t c = ILAW_ENERGY_COUNT; c < columns; ++c)
+      amounts_.push_back(ilaw::output(energy + c * max_stride, 1, 0));
     const Contacts::Call call{v_free.data(),
                               block.column(layout.delassus),
                               block.stride,
                               answer.data(),
-                              state.data(),
+                              balance_state_.data(),
                               status.data(),
                               group.asks_energy() ? energy : nullptr,
-                              group.amount_count() > 0 ? energy + ILAW_ENERGY_COUNT * max_stride : nullptr};
+                              amounts_.empty() ? nullptr : amounts_.data()};
     ilaw_report found{};
     const std::int32_t code = group.evaluate(block, call, found);
     if (code >= 0) continue;

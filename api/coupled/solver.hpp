@@ -26,7 +26,7 @@ class Solver {
   const char* make_blocks(ilaw_coupled_report& report);
   bool fill(Block& block);
   const char* refuse_held_axes(ilaw_coupled_report& report);
-  const char* complaint_of_overlaps(const ilaw_bodies& bodies) const;
+  const char* complaint_of_overlaps(const ilaw_bodies& bodies);
   void split_shared_bodies();
   void iterate(Limits limits);
   bool release_bonds();
@@ -57,6 +57,10 @@ class Solver {
   std::vector<std::int32_t> order_;
   std::vector<Motion> here_, everywhere_;  // sums of impulses per body, of this rank and of all
   std::vector<double> balance_, counts_;
+  // Scratch.
+  std::vector<const double*> outputs_;
+  std::vector<double> balance_state_;
+  std::vector<ilaw_output> amounts_;
   Islands islands_;
   std::array<char, 512> message_{};
 };
