@@ -62,10 +62,13 @@ Face face_of(const Plane& plane, int n, double size, double angle, bool triangle
 }
 
 FacetOverlap overlap_of(const FacetShape& facet, const Face& main) {
-  FacetIntegral integral(facet);
+  FacetOverlap overlap;
+  std::vector<Polygon> pieces;
+  FacetIntegral integral(facet, overlap, pieces);
   for (std::size_t m = 0; m < main.facets.size(); ++m)
     integral.add(static_cast<std::int32_t>(m), main.corners(m));
-  return integral.finish();
+  integral.finish();
+  return overlap;
 }
 
 // Rows of all nodes: area, first moment by the weights of their own side and of the main side, and what main

@@ -5,6 +5,28 @@
 
 #include <Eigen/Geometry>
 
+#include <atomic>
+#include <new>
+
+namespace {
+
+std::atomic<long> allocations{0};
+
+void* counted(std::size_t size) {
+  ++allocations;
+  if (void* made = std::malloc(size)) return made;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return counted(size); }
+void* operator new[](std::size_t size) { return counted(size); }
+void operator delete(void* room) noexcept { std::free(room); }
+void operator delete[](void* room) noexcept { std::free(room); }
+void operator delete(void* room, std::size_t) noexcept { std::free(room); }
+void operator delete[](void* room, std::size_t) noexcept { std::free(room); }
+
 namespace ilaw::host::testing {
 namespace {
 
@@ -327,6 +349,30 @@ TEST(DualMortar, NeedsFacetsOnBothSides) {
   source["interfaces"][0]["against"]["both_sides"] = true;
   EXPECT_EQ(refusal_of(source),
             "/interfaces/0/against/both_sides: found \"dual_mortar\", which is one of both sides already");
+}
+
+// While faces slide over each other, so that weights are integrated again and again. Rows and facets of dual
+// weights take memory where they meet more partners than ever before: fewer than one in ten in a step.
+TEST(CoupledStep, AllocatesNothingOnceWarm) {
+  const struct {
+    const char* discretization;
+    double at_most;  // in a step
+  } cases[] = {{"node_to_facet", 0.0}, {"dual_mortar", 0.1 * (6 * 6 + 7 * 7)}};
+  for (const auto& [discretization, at_most] : cases) {
+    GIVEN(discretization);
+    json source = blocks_on_each_other({{6, 6, 2}, {10, 10, 2}}, false, with_friction(0.2), 0.3);
+    source["interfaces"][0]["against"]["discretization"] = discretization;
+    source["model"]["blocks"][1]["velocity"] = {0.2, 0, 0};
+    source["loads"] = {pressure(100)};
+    Scene scene = scene_of(source);
+    host::Integrator integrator = unaudited(scene);
+    const std::int64_t warm = 2 * scene.steps / 3;
+    while (integrator.steps() < warm) integrator.step();
+    const long before = allocations;
+    while (integrator.steps() < scene.steps) integrator.step();
+    EXPECT_LE(static_cast<double>(allocations - before), at_most * static_cast<double>(scene.steps - warm));
+    EXPECT_GT(integrator.energy().by_law[ILAW_ENERGY_FRICTION], 0.0);
+  }
 }
 
 }  // namespace

@@ -14,17 +14,16 @@ struct ContactGeometry {
   SurfaceVelocities surface;  // velocities of a surface that turns, beside those of the obstacle
 };
 
-inline ContactGeometry locate_contact(const InterfaceSetup& setup, int node_index, const StepView& step,
-                                      const TurningRates& rates) {
+inline void locate_contact(const InterfaceSetup& setup, int node_index, const StepView& step,
+                           const TurningRates& rates, ContactGeometry& found) {
   const Counterpart& counterpart = *setup.counterpart;
-  ContactGeometry found{counterpart.contact_point(node_index, step.u, step.time), {}};
+  counterpart.find_contact(node_index, step.u, step.time, found.point);
   const Vector& normal = found.point.normal;
   found.surface = {Vector::Zero(normal.size()), Vector::Zero(normal.size())};
   if (counterpart.turns())
     found.surface =
         surface_velocities(counterpart, node_index, step.u, step.time, {found.point.gap, normal}, rates);
   found.point.gap -= setup.gap_offset(node_index);
-  return found;
 }
 
 // The velocity of a node relative to its partners.

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace ilaw::host {
@@ -25,6 +26,11 @@ struct ContactSums {
   std::vector<double> amounts;  // in the order of the instance; empty where the law gives none
   double stable_step = std::numeric_limits<double>::infinity();
 
+  // Keeps the memory of the amounts.
+  void clear() {
+    *this = {.amounts = std::move(amounts)};
+    amounts.clear();
+  }
   void add(const ContactSums& other) {
     work += other.work;
     relative_work += other.relative_work;

@@ -20,9 +20,9 @@ void Counterpart::gap_bounds(int first, int count, const Dofs& u, double time, d
   for (int i = 0; i < count; ++i) bounds[i] = gap_bound(first + i, u, time);
 }
 
-ContactPoint RigidCounterpart::contact_point(int node_index, const Dofs& u, double time) const {
+void RigidCounterpart::find_contact(int node_index, const Dofs& u, double time, ContactPoint& found) const {
   const RigidSurface surface = obstacle_->at(position(node_index, u), time);
-  return {surface.gap, surface.normal, {}};
+  found = {surface.gap, surface.normal, {}};
 }
 
 void RigidCounterpart::gap_bounds(int first, int count, const Dofs& u, double time, double* bounds) const {
@@ -35,10 +35,11 @@ void RigidCounterpart::gap_bounds(int first, int count, const Dofs& u, double ti
                 : flat_gaps<3>(model_, nodes, count, u, *flat, bounds);
 }
 
-ContactPoint NodeCounterpart::contact_point(int node_index, const Dofs& u, double /*time*/) const {
+void NodeCounterpart::find_contact(int node_index, const Dofs& u, double /*time*/,
+                                   ContactPoint& found) const {
   const int partner = partners_[static_cast<std::size_t>(node_index)];
   const Vector apart = position(node_index, u) - model_.position(partner, u);
-  return {apart.dot(normal_), normal_, {{partner, 1.0}}};
+  found = {apart.dot(normal_), normal_, {{partner, 1.0}}};
 }
 
 }  // namespace ilaw::host

@@ -40,6 +40,10 @@ class Partners {
       many_.push_back(partner);
     ++count_;
   }
+  void clear() {
+    count_ = 0;
+    many_.clear();
+  }
   bool empty() const { return count_ == 0; }
   std::size_t size() const { return count_; }
   const Partner* begin() const { return count_ <= few ? few_.data() : many_.data(); }
@@ -62,6 +66,14 @@ struct ContactPoint {
   std::size_t own_partners = 0;  // the first ones, of the node's own body
   double area = 0.0;             // that the contact stands for; 0: the tributary area of its node
 
+  // As it was made, with the memory of its partners kept.
+  void clear() {
+    partners.clear();
+    is_beyond_border = false;
+    own_weight = 1.0;
+    own_partners = 0;
+    area = 0.0;
+  }
   // Calls visit(node, weight) for the contact's own node and its partners.
   template <class Visit>
   void for_each_node(int node, Visit visit) const {
@@ -138,7 +150,13 @@ class Counterpart {
 
   // Where a node of the interface is, by node_index in its list, and its contact point.
   Vector position(int node_index, const Dofs& u) const;
-  virtual ContactPoint contact_point(int node_index, const Dofs& u, double time) const = 0;
+  ContactPoint contact_point(int node_index, const Dofs& u, double time) const {
+    ContactPoint found;
+    find_contact(node_index, u, time, found);
+    return found;
+  }
+  // The same, into a point whose memory is used again.
+  virtual void find_contact(int node_index, const Dofs& u, double time, ContactPoint& found) const = 0;
   // A bound from below on the gap, cheap, that relative motion by a distance lowers by no more than
   // the distance.
   virtual double gap_bound(int node_index, const Dofs& u, double time) const {
@@ -208,7 +226,7 @@ class RigidCounterpart : public Counterpart {
  public:
   RigidCounterpart(const Model& model, std::vector<int> nodes, std::unique_ptr<const Obstacle> obstacle)
       : Counterpart(model, std::move(nodes), {}), obstacle_(std::move(obstacle)) {}
-  ContactPoint contact_point(int node_index, const Dofs& u, double time) const override;
+  void find_contact(int node_index, const Dofs& u, double time, ContactPoint& found) const override;
   void gap_bounds(int first, int count, const Dofs& u, double time, double* bounds) const override;
   const Obstacle* obstacle() const override { return obstacle_.get(); }
   bool keeps_normal() const override { return obstacle_->is_flat(); }
@@ -222,7 +240,7 @@ class NodeCounterpart : public Counterpart {
  public:
   NodeCounterpart(const Model& model, std::vector<int> nodes, std::vector<int> partners, Vector normal)
       : Counterpart(model, std::move(nodes), std::move(partners)), normal_(std::move(normal)) {}
-  ContactPoint contact_point(int node_index, const Dofs& u, double time) const override;
+  void find_contact(int node_index, const Dofs& u, double time, ContactPoint& found) const override;
   bool keeps_normal() const override { return true; }
 
  private:

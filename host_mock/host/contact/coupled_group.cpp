@@ -53,14 +53,12 @@ void CoupledGroup::lay_out_partners() {
 void CoupledGroup::keep_forces(double velocity_step) {
   forget_forces();
   const auto d = static_cast<std::size_t>(dimension_);
-  ContactList contacts;
-  std::vector<double> forces;
   for (std::size_t i = 0; i < count(); ++i) {
     if (impulse(i).isZero(0.0)) continue;
-    contacts.push_back(contacts_[i]);
-    for (std::size_t c = 0; c < d; ++c) forces.push_back(columns_.impulse()[d * i + c] / velocity_step);
+    kept_.push_back(contacts_[i]);
+    for (std::size_t c = 0; c < d; ++c) kept_forces_.push_back(columns_.impulse()[d * i + c] / velocity_step);
   }
-  keep(std::move(contacts), std::move(forces));
+  start_from_kept();
 }
 
 void CoupledGroup::forget_forces() {
@@ -74,6 +72,10 @@ void CoupledGroup::forget_forces() {
 void CoupledGroup::keep(ContactList contacts, std::vector<double> forces) {
   kept_ = std::move(contacts);
   kept_forces_ = std::move(forces);
+  start_from_kept();
+}
+
+void CoupledGroup::start_from_kept() {
   const auto d = static_cast<std::size_t>(dimension_);
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     const std::size_t first = d * static_cast<std::size_t>(kept_[i]);

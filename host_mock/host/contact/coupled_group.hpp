@@ -67,6 +67,7 @@ class CoupledGroup {
 
  private:
   void lay_out_partners();
+  void start_from_kept();
 
   int dimension_;
   ilaw_delassus_form form_;

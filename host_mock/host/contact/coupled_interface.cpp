@@ -28,14 +28,15 @@ CoupledInterface::CoupledInterface(Interface& interface)
 
 const ilaw_contacts& CoupledInterface::open(const StepView& step) {
   interface_.choose_active(step);
-  interface_.sums_ = {};
+  interface_.sums_.clear();
   group_.open();
   const InterfaceSetup& setup = interface_.setup();
   const ObstacleMotion& obstacle = interface_.obstacle_;
   ContactArrays& contacts = interface_.contacts_;
   for (const std::int32_t contact : interface_.active()) {
     const auto k = static_cast<std::size_t>(contact);
-    const auto [point, surface] = locate_contact(setup, contacts.node_index[k], step, obstacle.rates());
+    locate_contact(setup, contacts.node_index[k], step, obstacle.rates(), found_);
+    const auto& [point, surface] = found_;
     contacts.gap[k] = point.gap;
     contacts.vector(contacts.normal, contact) = point.normal;
     contacts.vector(contacts.impulse, contact).setZero();

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "contact/contact_geometry.hpp"
 #include "contact/coupled_group.hpp"
 #include "contact/interface.hpp"
 
@@ -47,6 +48,7 @@ class CoupledInterface {
 
   Interface& interface_;
   CoupledGroup group_;
+  ContactGeometry found_;  // kept for the memory of its partners
 };
 
 }  // namespace ilaw::host

@@ -121,7 +121,7 @@ void Interface::choose_active(const StepView& step) {
 void Interface::solve(const StepView& step, Dofs& v) {
   choose_active(step);
   if (active().empty()) {
-    sums_ = {};
+    sums_.clear();
     return;
   }
   const BlockStep blocks{setup_, model_, inverse_mass_,    law_,   contacts_,  step, obstacle_,
@@ -184,7 +184,9 @@ Vector Interface::relative(int contact_index, const Dofs& v) const {
 // The node comes to where it is with the velocity before the step.
 Interface::Rubbing Interface::rubbing(int contact_index, const StepView& step) const {
   const int node_index = node_index_of(contact_index);
-  const auto [point, surface] = locate_contact(setup_, node_index, step, obstacle_.rates());
+  ContactGeometry found;
+  locate_contact(setup_, node_index, step, obstacle_.rates(), found);
+  const auto& [point, surface] = found;
   const auto along_surface = [&normal = point.normal](const Vector& vector) {
     return (vector - vector.dot(normal) * normal).norm();
   };

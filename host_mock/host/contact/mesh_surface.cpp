@@ -111,9 +111,10 @@ double MeshSurface::gap_bound(int node_index, const Dofs& /*u*/, double /*time*/
   return approach > 0.0 ? approach : -infinity;  // behind the surface by any distance
 }
 
-ContactPoint MeshSurface::contact_point(int node_index, const Dofs& /*u*/, double /*time*/) const {
+void MeshSurface::find_contact(int node_index, const Dofs& /*u*/, double /*time*/,
+                               ContactPoint& found) const {
   std::int32_t facet = 0, place = 0;
-  ContactPoint found;
+  found.clear();
   std::array<double, corner_count> weights{};
   found.normal.resize(3);
   ilaw_facets_pairs_of asked{};
@@ -126,7 +127,6 @@ ContactPoint MeshSurface::contact_point(int node_index, const Dofs& /*u*/, doubl
   const Facet& corners = facets_[static_cast<std::size_t>(std::max(facet, 0))];
   for (std::size_t k = 0; k < corner_count; ++k) found.partners.add({corners[k], weights[k]});
   found.is_beyond_border = place == ILAW_PLACE_BEYOND;
-  return found;
 }
 
 }  // namespace ilaw::host

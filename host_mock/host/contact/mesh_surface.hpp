@@ -26,7 +26,7 @@ class MeshSurface : public Counterpart {
  public:
   MeshSurface(const Model& model, std::vector<int> nodes, const NodeSet& surface);
 
-  ContactPoint contact_point(int node_index, const Dofs& u, double time) const override;
+  void find_contact(int node_index, const Dofs& u, double time, ContactPoint& found) const override;
   double gap_bound(int node_index, const Dofs& u, double time) const override;
   void follow(const Dofs& u) override;
   bool finds_near() const override { return true; }

@@ -208,18 +208,18 @@ void MortarSurface::refresh() {
 }
 
 void MortarSurface::integrate(Patch& patch) {
-  if (patch.candidates.empty()) {
-    patch.overlap = {};
-    return;
-  }
-  FacetIntegral integral(corners_of(patch));
+  FacetIntegral integral(corners_of(patch), patch.overlap, pieces_);
   for (const std::int32_t facet : patch.candidates) integral.add(facet, corners_of(facet));
-  patch.overlap = integral.finish();
+  integral.finish();
 }
 
 void MortarSurface::assemble(std::size_t node_index) {
-  std::vector<std::pair<std::int32_t, double>> own, main;
-  Row row;
+  Row& row = rows_[node_index];
+  row = {.partners = std::move(row.partners), .normals = std::move(row.normals)};
+  row.partners.clear();
+  row.normals.clear();
+  own_sums_.clear();
+  main_sums_.clear();
   const int node = nodes_[node_index];
   for (const std::int32_t p : patches_of_[node_index]) {
     const Patch& patch = patches_[static_cast<std::size_t>(p)];
@@ -229,16 +229,16 @@ void MortarSurface::assemble(std::size_t node_index) {
         patch.corners.begin();
     row.area += patch.overlap.area[corner];
     for (std::size_t j = 0; j < patch.corner_count; ++j)
-      add_to(own, nodes_[static_cast<std::size_t>(patch.corners[j])],
+      add_to(own_sums_, nodes_[static_cast<std::size_t>(patch.corners[j])],
              patch.overlap.own(corner, static_cast<Eigen::Index>(j)));
     for (const FacetOverlap::Part& part : patch.overlap.parts) {
       const Facet& facet = facets()[static_cast<std::size_t>(part.facet)];
       add_to(row.normals, part.facet, part.weights.row(corner).sum());
       for (std::size_t k = 0; k < 4; ++k)
-        add_to(main, facet[k], part.weights(corner, static_cast<Eigen::Index>(k)));
+        add_to(main_sums_, facet[k], part.weights(corner, static_cast<Eigen::Index>(k)));
     }
   }
-  for (auto& [other, weight] : own) {
+  for (auto& [other, weight] : own_sums_) {
     weight /= row.area;
     if (other == node)
       row.own_weight = weight;
@@ -246,11 +246,10 @@ void MortarSurface::assemble(std::size_t node_index) {
       row.partners.push_back({other, -weight});
   }
   row.own_partners = row.partners.size();
-  for (const auto& [other, weight] : main)
+  for (const auto& [other, weight] : main_sums_)
     if (std::fabs(weight) > least_weight * row.area) row.partners.push_back({other, weight / row.area});
-  rows_[node_index] = std::move(row);
   locate(node_index);
-  rows_[node_index].start = rows_[node_index].apart;
+  row.start = row.apart;
 }
 
 // ---- a step ---------------------------------------------------------------------------------------------
@@ -266,17 +265,16 @@ void MortarSurface::locate(std::size_t node_index) {
   row.normal.normalize();
 }
 
-ContactPoint MortarSurface::contact_point(int node_index, const Dofs& u, double time) const {
+void MortarSurface::find_contact(int node_index, const Dofs& u, double time, ContactPoint& found) const {
   const Row& row = rows_[static_cast<std::size_t>(node_index)];
-  if (row.area == 0.0) return MeshSurface::contact_point(node_index, u, time);
-  ContactPoint found;
+  if (row.area == 0.0) return MeshSurface::find_contact(node_index, u, time, found);
+  found.clear();
   found.gap = row.apart.dot(row.normal);
   found.normal = row.normal;
   found.own_weight = row.own_weight;
   found.area = row.area;
   found.own_partners = row.own_partners;
   for (const Partner& partner : row.partners) found.partners.add(partner);
-  return found;
 }
 
 // A row carries to the border and not beyond: it needs no memory of who was there.

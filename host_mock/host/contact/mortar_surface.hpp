@@ -23,7 +23,7 @@ class MortarSurface : public MeshSurface {
   // Facets of own have all their nodes in it.
   MortarSurface(const Model& model, const NodeSet& own, const NodeSet& surface);
 
-  ContactPoint contact_point(int node_index, const Dofs& u, double time) const override;
+  void find_contact(int node_index, const Dofs& u, double time, ContactPoint& found) const override;
   double gap_bound(int node_index, const Dofs& u, double time) const override;
   void follow(const Dofs& u) override;
   bool find_near(const Dofs& u, const Approach& approach) override;
@@ -73,6 +73,8 @@ class MortarSurface : public MeshSurface {
   std::vector<std::int32_t> face_points_;              // four points for each facet, as the search takes them
   std::vector<std::int64_t> first_;                    // of the candidates of each patch, in found_
   std::vector<std::int32_t> found_;
+  std::vector<Polygon> pieces_;                                        // of one facet: scratch
+  std::vector<std::pair<std::int32_t, double>> own_sums_, main_sums_;  // of one row: scratch
 
   // The list of patches that have candidates, and of their nodes. It is new once the surfaces may have moved
   // so far that it is not complete.

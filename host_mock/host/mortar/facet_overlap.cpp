@@ -43,7 +43,7 @@ void for_each_point(const Polygon& polygon, Visit visit) {
 
 }  // namespace
 
-FacetIntegral::FacetIntegral(const FacetShape& corners)
+FacetIntegral::FacetIntegral(const FacetShape& corners, FacetOverlap& overlap, std::vector<Polygon>& pieces)
     : count_(corners.count),
       origin_(corners.at[0]),
       normal_(corners.double_area().normalized()),
@@ -51,7 +51,14 @@ FacetIntegral::FacetIntegral(const FacetShape& corners)
       second_(normal_.cross(first_)),
       outline_(flat(corners)),
       shape_(outline_),
-      size_(std::sqrt(outline_.area())) {}
+      size_(std::sqrt(outline_.area())),
+      pieces_(pieces),
+      overlap_(overlap) {
+  pieces_.clear();
+  overlap_.area.setZero();
+  overlap_.own.setZero();
+  overlap_.parts.clear();
+}
 
 Eigen::Vector2d FacetIntegral::flat(const Eigen::Vector3d& point) const {
   const Eigen::Vector3d from = point - origin_;
@@ -71,13 +78,13 @@ void FacetIntegral::add(std::int32_t facet, const FacetShape& corners) {
   const Polygon piece = clipped(other.reversed(), outline_);
   if (piece.size() < 3 || !(piece.area() > least_part * size_ * size_)) return;
   pieces_.push_back(piece);
-  standard_.parts.push_back({facet, Eigen::Matrix4d::Zero()});
-  Eigen::Matrix4d& weights = standard_.parts.back().weights;
+  overlap_.parts.push_back({facet, Eigen::Matrix4d::Zero()});
+  Eigen::Matrix4d& weights = overlap_.parts.back().weights;
   const FlatFacet other_shape(other);
   for_each_point(piece, [&](const Eigen::Vector2d& point, double weight) {
     const Eigen::Vector4d own = shape_.at(point);
-    standard_.area += weight * own;
-    standard_.own += weight * own * own.transpose();
+    overlap_.area += weight * own;
+    overlap_.own += weight * own * own.transpose();
     weights += weight * own * other_shape.at(point).transpose();
   });
 }
@@ -87,13 +94,13 @@ void FacetIntegral::add(std::int32_t facet, const FacetShape& corners) {
 double FacetIntegral::dual_share() const {
   double share = 1.0;
   const auto n = static_cast<Eigen::Index>(count_);
-  const double covered = standard_.area.sum() / (size_ * size_);
+  const double covered = overlap_.area.sum() / (size_ * size_);
   if (covered > 1.0 - corner_rounding) return 1.0;
   for (Eigen::Index i = 0; i < n; ++i) {
-    if (!(standard_.area[i] > least_part * size_ * size_)) continue;
+    if (!(overlap_.area[i] > least_part * size_ * size_)) continue;
     Eigen::Vector2d centroid = Eigen::Vector2d::Zero();
     for (Eigen::Index j = 0; j < n; ++j)
-      centroid += standard_.own(i, j) / standard_.area[i] * outline_[static_cast<std::size_t>(j)];
+      centroid += overlap_.own(i, j) / overlap_.area[i] * outline_[static_cast<std::size_t>(j)];
     double reached = 0.0;
     for (const Polygon& piece : pieces_)
       reached = std::max(reached, last_inside(piece, centroid, outline_[static_cast<std::size_t>(i)],
@@ -110,21 +117,19 @@ Eigen::Matrix4d FacetIntegral::test_functions(double dual_share) const {
   const auto n = static_cast<Eigen::Index>(count_);
   if (n == 3)
     t.topLeftCorner<3, 3>() +=
-        dual_share * standard_.area.head<3>().asDiagonal() * standard_.own.topLeftCorner<3, 3>().inverse();
+        dual_share * overlap_.area.head<3>().asDiagonal() * overlap_.own.topLeftCorner<3, 3>().inverse();
   else
-    t += dual_share * standard_.area.asDiagonal() * standard_.own.inverse();
+    t += dual_share * overlap_.area.asDiagonal() * overlap_.own.inverse();
   return t;
 }
 
-FacetOverlap FacetIntegral::finish() const {
-  FacetOverlap overlap = standard_;
-  if (overlap.parts.empty()) return overlap;
+void FacetIntegral::finish() {
+  if (overlap_.parts.empty()) return;
   const double share = dual_share();
   const Eigen::Matrix4d t = test_functions(share);
-  const Eigen::Matrix4d diagonal = overlap.area.asDiagonal();
-  overlap.own = (1.0 - share) * standard_.own + share * diagonal;
-  for (FacetOverlap::Part& part : overlap.parts) part.weights = t * part.weights;
-  return overlap;
+  const Eigen::Matrix4d diagonal = overlap_.area.asDiagonal();
+  overlap_.own = (1.0 - share) * overlap_.own + share * diagonal;
+  for (FacetOverlap::Part& part : overlap_.parts) part.weights = t * part.weights;
 }
 
 }  // namespace ilaw::host

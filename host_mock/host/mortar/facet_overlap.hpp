@@ -45,10 +45,11 @@ struct FacetOverlap {
 // their centroid, which is short of the border. In between, a blend of both puts it on the border.
 class FacetIntegral {
  public:
-  explicit FacetIntegral(const FacetShape& corners);
+  // Writes into overlap; pieces is scratch. Both keep their memory.
+  FacetIntegral(const FacetShape& corners, FacetOverlap& overlap, std::vector<Polygon>& pieces);
   // Adds the overlap with a facet that faces this one; does nothing where there is none.
   void add(std::int32_t facet, const FacetShape& corners);
-  FacetOverlap finish() const;
+  void finish();
 
  private:
   Eigen::Vector2d flat(const Eigen::Vector3d& point) const;
@@ -61,8 +62,8 @@ class FacetIntegral {
   Polygon outline_;
   FlatFacet shape_;
   double size_;  // square root of the area
-  std::vector<Polygon> pieces_;
-  FacetOverlap standard_;  // with the shape functions as test functions
+  std::vector<Polygon>& pieces_;
+  FacetOverlap& overlap_;  // until the end with the shape functions as test functions
 };
 
 }  // namespace ilaw::host
