@@ -74,7 +74,8 @@ TEST(BirthAndDeath, LeaveTheStatusFree) {
   scene["output"] = {{"watch", {0}}};
   auto [run, integrator] = simulation_of(scene);
   const auto folder = fresh_folder();
-  History history(run, integrator, folder);
+  History history(run, integrator);
+  history.open(folder);
   while (integrator.steps() < run.steps) {
     integrator.step();
     history.add_row(integrator);
@@ -97,7 +98,8 @@ TEST(Watched, NodesAreContactsInTheirOrder) {
   scene["output"] = {{"watch", {2, 1}}};
   auto [run, integrator] = simulation_of(scene);
   const auto folder = fresh_folder();
-  History history(run, integrator, folder);
+  History history(run, integrator);
+  history.open(folder);
   history.add_row(integrator);
   EXPECT_EQ(run.interfaces[0]->contact_count(), 0U);
   integrator.step();
