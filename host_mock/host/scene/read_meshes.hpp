@@ -24,8 +24,8 @@ std::string line_of_mesh(const nlohmann::json& described);
 nlohmann::json marks_of_files(const nlohmann::json& model, const std::filesystem::path& scene_file);
 
 // Reads a .vtu file and checks it: all indices are in range, all cells have a type that MeshData knows. VTK's
-// reader crashes on some damaged files, so it runs in a process of its own. A legacy .vtk file has no end that
-// tells whether it is whole, so none is read. Throws MeshError.
+// reader crashes on some damaged files, so it runs in a process of its own. A legacy .vtk file has no end
+// that tells whether it is whole, so none is read. Throws MeshError.
 MeshData read_mesh_file(const std::filesystem::path& file);
 
 }  // namespace ilaw::host
