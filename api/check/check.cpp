@@ -90,6 +90,7 @@ Outcome outcome_of(const std::string& law, const Rule& rule, const Ending& endin
   if (ending.late) {
     outcome.verdict = Verdict::not_judged;
     outcome.why = "took longer than the limit of time";
+    outcome.late = true;
   } else if (!ending.returned) {
     outcome.verdict = Verdict::broken;
     const std::string call = ending.call.empty() ? "the library" : ending.call;
@@ -152,16 +153,17 @@ Outcome shrunken(Outcome found, const std::string& file, const std::string& law,
   return found;
 }
 
-// The first finding, or what all seeds reached. A rule that one seed could judge is judged.
+// The first finding, or what all seeds reached. A rule that one seed could judge is judged, unless another
+// one came to the limit of time.
 Outcome judge_apart(const std::string& file, const std::string& law, const Rule& rule,
                     const Options& options) {
   Outcome outcome = judge_with(options.seeds.at(0), file, law, rule, options);
   for (std::size_t k = 1; k < options.seeds.size() && rule.needs == Needs::motion; ++k) {
-    if (outcome.verdict == Verdict::broken) break;
+    if (outcome.verdict == Verdict::broken || outcome.late) break;
     Outcome next = judge_with(options.seeds[k], file, law, rule, options);
     next.seconds += outcome.seconds;
     next.reach.add(outcome.reach);
-    if (next.verdict == Verdict::not_judged) next.verdict = outcome.verdict;
+    if (next.verdict == Verdict::not_judged && !next.late) next.verdict = outcome.verdict;
     outcome = std::move(next);
   }
   return outcome;

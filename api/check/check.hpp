@@ -35,6 +35,7 @@ struct Outcome {
   Verdict verdict;
   Finding finding;         // where it is broken
   std::string why;         // where it is not judged
+  bool late = false;       // not judged, because of the limit of time
   std::uint64_t seed = 0;  // of the finding
   Part part{};             // that has the finding, too
   double seconds = 0.0;

@@ -175,7 +175,8 @@ bool all_threads_sleep(pid_t child) {
     std::string text;
     std::getline(std::ifstream(task.path() / "stat"), text);
     const std::size_t state = text.rfind(") ");
-    if (state == std::string::npos || text.compare(state, 3, ") S") != 0) return false;
+    const char letter = state == std::string::npos ? 'R' : text[state + 2];
+    if (letter == 'R' || letter == 'D') return false;
   }
   return true;
 }
@@ -183,7 +184,7 @@ bool all_threads_sleep(pid_t child) {
 enum class Waiting { goes_on, hangs, too_long };
 
 // How a child gets on by the time that it has a processor: one call may take all of the limit, and so may
-// all calls together. A call that sleeps has no processor, and is timed by the clock.
+// all calls together. A call that sleeps, or wakes only to look at something, is timed by the clock.
 class ChildWatch {
  public:
   ChildWatch(pid_t child, double seconds, const Shared& left)
@@ -193,22 +194,23 @@ class ChildWatch {
     const double now = seconds_on(CLOCK_MONOTONIC), used = processor_time_of(child_);
     const std::size_t calls = left_.calls;
     const bool is_next = calls != calls_;
-    if (is_next) calls_ = calls, used_before_ = used;
-    if (is_next || used > used_ + least) used_ = used, awake_ = now;
+    if (is_next) calls_ = calls, used_before_ = used, began_ = now;
+    if (is_next || used > used_ + least + busy * (now - awake_)) used_ = used, awake_ = now;
     if (is_next && used > seconds_) return Waiting::too_long;
     if (used - used_before_ > seconds_) return Waiting::hangs;
     if (now - awake_ > seconds_ && all_threads_sleep(child_)) return Waiting::hangs;
+    if (now - began_ > most_waiting * seconds_) return Waiting::hangs;
     return now - begin_ > most_waiting * seconds_ ? Waiting::too_long : Waiting::goes_on;
   }
 
  private:
-  static constexpr double least = 1e-3, most_waiting = 60.0;
+  static constexpr double least = 1e-3, busy = 0.02, most_waiting = 60.0;
 
   const pid_t child_;
   const double seconds_, begin_ = seconds_on(CLOCK_MONOTONIC);
   const Shared& left_;
   std::size_t calls_ = 0;
-  double used_before_ = 0.0, used_ = 0.0, awake_ = begin_;
+  double used_before_ = 0.0, used_ = 0.0, awake_ = begin_, began_ = begin_;
 };
 
 // Anything but goes_on: the child had to be ended.

@@ -233,7 +233,7 @@ class pair_contact {
     ilaw_coupled_report report{};
     report.struct_size = sizeof report;
     if (ilaw_coupled_solve(solver_.get(), &bodies, groups, 1, &options, &report) != ILAW_OK)
-      throw std::runtime_error(report.reason);
+      throw std::runtime_error(report.reason ? report.reason : "the solver gave no reason");
     double work = 0.0;
     for (std::size_t k = 0; k < nodes_.size(); ++k)
       for (unsigned c = 0; c < 3; ++c) work += impulse[k][c] * 0.5 * (nodes_[k][3 + c] + nodes_[k][6 + c]);

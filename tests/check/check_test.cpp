@@ -244,6 +244,7 @@ TEST(Ending, OfTheProcessIsAFinding) {
       {"functions-return", "evaluate was ended by SIGSEGV, writing where nothing of the batch is"},
       {"hang", "evaluate did not return within 1 s"},
       {"pause", "evaluate did not return within 1 s"},
+      {"poll", "evaluate did not return within 1 s"},
       {"exit", "evaluate ended the process with exit code 3"},
       {"quiet exit", "evaluate ended the process with exit code 0"},
       {"abort", "evaluate was ended by SIGABRT"},
@@ -253,7 +254,7 @@ TEST(Ending, OfTheProcessIsAFinding) {
   };
   for (const auto& [breaks, expected] : words) {
     Options options = only({"functions-return", "purity-twice"});
-    options.limits.seconds = breaks == "hang" || breaks == "pause" ? seconds : 30.0;
+    options.limits.seconds = breaks == "hang" || breaks == "pause" || breaks == "poll" ? seconds : 30.0;
     options.limits.megabytes = 64;
     const Checked checked = check_sample(breaks, options);
     EXPECT_EQ(broken(checked), Names{"functions-return"}) << breaks;

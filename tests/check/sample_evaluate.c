@@ -154,6 +154,8 @@ static void misbehave(const ilaw_batch* b, int rough) {
     for (;;) ++counter;
   if (breaks("pause"))
     for (;;) pause();
+  if (breaks("poll"))
+    for (;;) usleep(1000);
   if (breaks("naps")) usleep(2000);
   if (breaks("slow"))
     for (clock_t end = clock() + CLOCKS_PER_SEC / 100; clock() < end;) ++counter;

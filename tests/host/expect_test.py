@@ -53,9 +53,16 @@ class Expect(unittest.TestCase):
         self.assertIn("missed: energy.dissipated_friction: expected 3.9 to 0.001, found 4; v^2/(2 mu g)", done.stderr)
         self.assertFalse(summary["expectations"][0]["within"])
 
+    def test_may_be_of_what_only_the_start_gives(self):
+        scene = json.loads((SOURCE / "host_mock/scenes/prestressed_seal.json").read_text())
+        expected = {"what": "prestress.residual", "value": 0, "tolerance": 1e-6, "because": "it is at rest"}
+        done, _ = run({**scene, "expect": [expected]})
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_refuses_a_quantity_that_the_run_has_not(self):
         for what, words in [("n1.u0", ["/expect/0/what: found 'n1.u0'", "energy.internal", "n0.u0"]),
                             ("failure", ["/expect/0/what: found 'failure'"]),
+                            ("floor.amounts", ["/expect/0/what: found 'floor.amounts'"]),
                             ("n0.u0:first", ["expected one of last, min, max, mean"])]:
             with self.subTest(what=what):
                 done, summary = run(expecting(what))

@@ -28,7 +28,6 @@ class ContactColumns {
     bool arrays, states;
   };
   void take(ContactArrays& at, const std::int32_t* contacts, std::ptrdiff_t count, InPlace in_place);
-  void read_parameters();
   void fill(ilaw_batch& batch);
 
   // ---- by place among the contacts ----
@@ -53,6 +52,7 @@ class ContactColumns {
   void scatter_states() const;
 
  private:
+  void read_parameters();
   // The array from the first contact on, or a copy of it in room; null where it is empty.
   double* column(std::vector<double>& all, double* room) const;
 

@@ -28,7 +28,8 @@ std::map<std::string, json> numbers_of(const json& summary) {
     if (summary.contains(part)) add(part, summary[part]);
   for (const json& interface : summary.value("interfaces", json::array()))
     for (const char* part : {"first_contact", "amounts"})
-      add(interface.at("name"), {{part, interface.at(part)}});
+      if (const json& values = interface.at(part); !values.is_structured() || !values.empty())
+        add(interface.at("name"), {{part, values}});
   numbers["warnings"] = summary.value("warnings", json::array()).size();
   return numbers;
 }
