@@ -2,12 +2,19 @@
 #include "fix_ilaw_pair.hpp"
 
 #include <atom.h>
+#include <comm.h>
+#include <error.h>
 #include <force.h>
+#include <group.h>
+#include <modify.h>
 #include <neigh_list.h>
 #include <pair.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
+#include <set>
 
 namespace LAMMPS_NS {
 
@@ -21,6 +28,45 @@ void FixIlawPair::check() {
   if (!(force->pair->cutforce > 2.0 * radius))
     refuse("the cutoff of the pair style has to be larger than the largest diameter, " +
            std::to_string(2.0 * radius));
+  warn_of_strangers();
+}
+
+// Where no pair style acts either, two grains meet only if a fix has both in its group. The last fix says it
+// for all.
+void FixIlawPair::warn_of_strangers() {
+  if (!force->pair_match("zero", 1)) return;
+  int of_laws = 0;
+  const FixIlawPair* last = nullptr;
+  for (int i = 0; i < modify->nfix; ++i)
+    if (const auto* other = dynamic_cast<FixIlawPair*>(modify->fix[i])) {
+      of_laws |= other->groupbit;
+      last = other;
+    }
+  if (last != this) return;
+  std::set<int> here;
+  for (int i = 0; i < atom->nlocal; ++i) here.insert(atom->mask[i] & of_laws);
+  const std::vector<int> sent(here.begin(), here.end());
+  int count = static_cast<int>(sent.size());
+  std::vector<int> counts(static_cast<std::size_t>(comm->nprocs)), first(counts.size());
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  std::exclusive_scan(counts.begin(), counts.end(), first.begin(), 0);
+  std::vector<int> all(static_cast<std::size_t>(first.back() + counts.back()));
+  MPI_Allgatherv(sent.data(), count, MPI_INT, all.data(), counts.data(), first.data(), MPI_INT, world);
+  if (comm->me != 0) return;
+  const std::set<int> groups(all.begin(), all.end());
+  for (auto one = groups.begin(); one != groups.end(); ++one)
+    for (auto other = std::next(one); other != groups.end(); ++other)
+      if ((*one & *other) == 0)
+        error->warning(FLERR, "Fix ilaw/pair: grains of " + name(*one) + " and of " + name(*other) +
+                                  " pass through each other, since no fix ilaw/pair has both in its group");
+}
+
+std::string FixIlawPair::name(int mask) const {
+  std::string names;
+  for (int g = 0; g < group->ngroup; ++g)
+    if (mask & group->bitmask[g])
+      names += (names.empty() ? "group " : " and ") + std::string(group->names[g]);
+  return names.empty() ? "no group of one" : names;
 }
 
 void FixIlawPair::find() {

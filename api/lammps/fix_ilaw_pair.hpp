@@ -14,6 +14,8 @@ class FixIlawPair : public FixIlaw {
   int read_own(const std::vector<std::string>&, std::size_t) override { return 0; }
   void find() override;
   void check() override;
+  void warn_of_strangers();
+  std::string name(int mask) const;
   void add(int body, int counterpart, double distance);
 };
 

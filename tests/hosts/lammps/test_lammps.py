@@ -437,6 +437,22 @@ def test_says_what_it_refuses(tmp_path, change, message):
         lammps(tmp_path, text.replace(*change))
 
 
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_warns_of_grains_that_no_fix_has_together(tmp_path, ranks):
+    text = pile().replace("fix nve", "group low id <= 13\ngroup high id > 13\nfix nve")
+    apart = "fix p low ilaw/pair contact\nfix q {} ilaw/pair coulomb friction 0.3\nrun 1\n"
+    text = text[:text.index("fix p")]
+    warning = "grains of {} and of {} pass through each other"
+    said = lammps(tmp_path, text + apart.format("high"), ranks)
+    assert said.count(warning.format("group low", "group high")) == 1, said
+    assert said.count("pass through each other") == 1
+    said = lammps(tmp_path, text + "fix p low ilaw/pair contact\nrun 1\n", ranks)
+    assert warning.format("no group of one", "group low") in said, said
+    pushed = text.replace("style zero", "style lj/cut").replace("coeff * *", "coeff * * 0.0 1.0")
+    for text in (text + apart.format("all"), pushed + apart.format("high")):
+        assert "pass through each other" not in lammps(tmp_path, text, ranks)
+
+
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.name)
 def test_examples_run(tmp_path, example):
     text = example.read_text()
