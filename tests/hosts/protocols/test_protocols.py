@@ -259,10 +259,15 @@ def cell(hosts, case, folder):
     return " and ".join(sorted(found - {"not installed"} or found))
 
 
+def row(cells):
+    return "| " + " | ".join(cells) + " |"
+
+
 def table(folder):
-    lines = ["| protocol | " + " | ".join(", ".join(hosts) for hosts in COLUMNS) + " |", "| --- |" + " --- |" * len(COLUMNS)]
-    return lines + [f"| {case.name.replace('_', ' ')} | "
-                    + " | ".join(cell(hosts, case, folder) for hosts in COLUMNS) + " |" for case in CASES]  # fmt: skip
+    heads = ["protocol", *(", ".join(hosts) for hosts in COLUMNS)]
+    return [row(heads), row(["---"] * len(heads))] + [
+        row([case.name.replace("_", " "), *(cell(hosts, case, folder) for hosts in COLUMNS)]) for case in CASES
+    ]
 
 
 def test_the_page_has_this_table(tmp_path):
