@@ -23,7 +23,7 @@ SCHEMA = ROOT / "host_mock" / "schema" / "scene.schema.json"
 
 # Sections in the order of a scene: heading, then the objects of the schema that it lists.
 SECTIONS = [
-    ("The scene", [("", ""), ("units", "`units`")]),
+    ("The scene", [("", "")]),
     ("Time", [("time", "`time`")]),
     ("Points", [("model_points", "`model` of type `points`"), ("point", "entries of `points`"),
                 ("thermal_point", "`thermal` of a point")]),
@@ -52,20 +52,22 @@ SECTIONS = [
     ("Plane", [("obstacle_plane", "`obstacle` of type `plane`"), ("tilt", "`tilt` of a plane")]),
     ("Sphere", [("obstacle_sphere", "`obstacle` of type `sphere`")]),
     ("Cylinder", [("obstacle_cylinder", "`obstacle` of type `cylinder`")]),
-    ("Output", [("output", "`output`"), ("force_of", "an entry of `forces` with a moment")]),
+    ("Output", [("output", "`output`")]),
     ("Expected values", [("expect", "entries of `expect`")]),
     ("Closed forms", [("exact", "`exact`")]),
     ("Convergence", [("converge", "`converge`")]),
     ("Laws side by side", [("study", "`study`"), ("study_law", "entries of `laws`")]),
 ]
-# Objects without a table: NODES says the first two, a curve the third, the sections of bodies the last.
-IN_WORDS = {"near", "box", "path_curve", "model"}
+# Objects without a table: NODES, VALUES, the sections of bodies or a curve say their keys.
+IN_WORDS = {"near", "box", "units", "force_of", "model", "path_curve"}
 # Definitions that are values and not objects of their own: as the tables name them.
 VALUES = {
     "vector": "vector", "nodes": "[nodes](#nodes)", "history": "[curve](#curves-over-time)",
     "path": "[path](#curves-over-time)", "places": "vector, or list of vectors",
     "model": "type [points](#points), [rotating_spring](#rotating-spring), [bars](#bars), [blocks](#blocks) or "
              "[solids](#solids)",
+    "units": "strings `length`, `mass`, `time`, and optional `temperature`",
+    "force_of": "object of a name `of` and a point `about`, for its moment",
     "near": "[`near`](#nodes)", "box": "[`box`](#nodes)", "history_rows": "list of [time, value]",
     "path_rows": "list of [time, displacement...]", "obstacle_temperature": "number, or [curve](#curves-over-time)",
 }
