@@ -23,9 +23,8 @@ SCHEMA = ROOT / "host_mock" / "schema" / "scene.schema.json"
 
 # Sections in the order of a scene: heading, then the objects of the schema that it lists.
 SECTIONS = [
-    ("The scene", [("", ""), ("units", "`units`")]),
+    ("The scene", [("", "")]),
     ("Time", [("time", "`time`")]),
-    ("Models", [("model", "`model`, common to all types")]),
     ("Points", [("model_points", "`model` of type `points`"), ("point", "entries of `points`"),
                 ("thermal_point", "`thermal` of a point")]),
     ("Rotating spring", [("model_rotating_spring", "`model` of type `rotating_spring`")]),
@@ -33,7 +32,7 @@ SECTIONS = [
     ("Blocks", [("model_blocks", "`model` of type `blocks`"), ("block", "entries of `blocks`"),
                 ("material", "`material`"), ("thermal", "`thermal`")]),
     ("Solids", [("model_solids", "`model` of type `solids`"), ("mesh", "entries of `meshes`")]),
-    ("Nodes", [("near", "nodes near places"), ("box", "nodes in a box")]),
+    ("Nodes", []),
     ("Initial displacements", [("initial", "entries of `initial`")]),
     ("Prestress", [("prestress", "`prestress`")]),
     ("Springs", [("spring", "entries of `springs`")]),
@@ -47,33 +46,36 @@ SECTIONS = [
                  ("load_bulk_viscosity", "load of type `bulk_viscosity`")]),
     ("Temperature", [("load_temperature", "load of type `temperature`")]),
     ("Heat flux", [("load_heat_flux", "load of type `heat_flux`")]),
-    ("Curves over time", [("history_curve", "a curve in place of a list of [time, value]"),
-                          ("path_curve", "a path in place of a list of [time, displacement...]"),
-                          ("sine", "`sine`")]),
+    ("Curves over time", [("history_curve", "a curve, or a path, as an object"), ("sine", "`sine`")]),
     ("Interfaces", [("interface", "entries of `interfaces`"), ("against", "`against`"),
                     ("obstacle", "`obstacle`, common to all types")]),
     ("Plane", [("obstacle_plane", "`obstacle` of type `plane`"), ("tilt", "`tilt` of a plane")]),
     ("Sphere", [("obstacle_sphere", "`obstacle` of type `sphere`")]),
     ("Cylinder", [("obstacle_cylinder", "`obstacle` of type `cylinder`")]),
-    ("Output", [("output", "`output`"), ("force_of", "an entry of `forces` with a moment")]),
+    ("Output", [("output", "`output`")]),
     ("Expected values", [("expect", "entries of `expect`")]),
     ("Closed forms", [("exact", "`exact`")]),
     ("Convergence", [("converge", "`converge`")]),
     ("Laws side by side", [("study", "`study`"), ("study_law", "entries of `laws`")]),
 ]
+# Objects without a table: NODES, VALUES, the sections of bodies or a curve say their keys.
+IN_WORDS = {"near", "box", "units", "force_of", "model", "path_curve"}
 # Definitions that are values and not objects of their own: as the tables name them.
 VALUES = {
     "vector": "vector", "nodes": "[nodes](#nodes)", "history": "[curve](#curves-over-time)",
     "path": "[path](#curves-over-time)", "places": "vector, or list of vectors",
+    "model": "type [points](#points), [rotating_spring](#rotating-spring), [bars](#bars), [blocks](#blocks) or "
+             "[solids](#solids)",
+    "units": "strings `length`, `mass`, `time`, and optional `temperature`",
+    "force_of": "object of a name `of` and a point `about`, for its moment",
     "near": "[`near`](#nodes)", "box": "[`box`](#nodes)", "history_rows": "list of [time, value]",
     "path_rows": "list of [time, displacement...]", "obstacle_temperature": "number, or [curve](#curves-over-time)",
 }
 
 KEYS_HEAD = """# Reference: keys of a scene
 
-A scene is a JSON file with the keys below. Unknown keys, wrong types and values out of range are
-refused before anything runs, with the place (a JSON pointer), the value found and the values allowed.
-[Scenes](../scenes.md) shows how to write one; this page is made from
+[Scenes](../scenes.md) shows how to write a scene. An unknown key, a wrong type or a value out of range is
+refused before anything runs, with its place, the value found and the values allowed. This page is made from
 [the schema](../../host_mock/schema/scene.schema.json) by `docs/make_reference.py keys`.
 
 - Keys in bold are required. Vectors have as many components as the model has dimensions.
@@ -82,14 +84,12 @@ refused before anything runs, with the place (a JSON pointer), the value found a
   times, which must increase, and constant outside; or [an object](#curves-over-time).
 """
 
-NODES = """Nodes are chosen in one of four ways:
-
-| value | nodes |
+NODES = """| value | nodes |
 | --- | --- |
 | `"all"`, or the name of a set | bar `b` has the sets `b`, `b.left`, `b.right`; block `b` has `b` and its faces `b.x_min`, `b.x_max`, ... `b.z_max`; `sets` adds more |
 | `[0, 3]` | numbers, from 0; nodes of blocks are numbered along x first |
-| `{"near": [x, y, z]}` | the node nearest to each place |
-| `{"box": [[low], [high]], "of": "b.z_min"}` | the nodes inside |
+| `{"near": [x, y, z]}` | the node nearest to a place, or to each place of a list |
+| `{"box": [[low], [high]], "of": "b.z_min"}` | the nodes inside, bounds included; of the set `of` alone, if it is given |
 """
 
 COMMANDS_HEAD = """# Reference: commands of ilaw
@@ -188,13 +188,13 @@ def keys_page():
     schema = json.loads(SCHEMA.read_text())
     definitions = schema["definitions"]
     shown = {name for _, objects in SECTIONS for name, _ in objects}
-    left = {name for name, part in definitions.items() if part.get("properties") and name not in shown}
+    left = {name for name, part in definitions.items() if part.get("properties") and name not in shown | IN_WORDS}
     if left:
         sys.exit(f"SECTIONS of {__file__} leaves out {', '.join(sorted(left))}")
     text = [KEYS_HEAD]
     for heading, objects in SECTIONS:
         objects = [(name, words) for name, words in objects if not name or name in definitions]
-        if not objects:
+        if not objects and heading != "Nodes":
             continue
         text.append(f"## {heading}\n")
         if heading == "Nodes":

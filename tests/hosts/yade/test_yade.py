@@ -130,6 +130,13 @@ def test_the_example_settles_beside_yades_own_law(tmp_path):
     assert all(float(row[5].strip(" %")) < bound for row, bound in zip(rows, (0.1, 0.1, 1))), rows
 
 
+def test_the_script_of_the_page_runs(tmp_path):
+    script = re.search(r"```python\n(.*?)```", (YADE / "README.md").read_text(), re.S)[1]
+    (tmp_path / "drop.py").write_text(script)
+    height, residual = map(float, yade(tmp_path, "drop.py").strip().splitlines()[-1].split())
+    assert height == pytest.approx(0.05, abs=1e-12) and residual < 1e-8
+
+
 def test_the_example_rolls_out(tmp_path):
     said = yade(tmp_path, YADE / "examples/roll.py", 2e-3)
     found = re.search(r"^rolled (\S+) m, closed form (\S+) m, spin left (\S+)", said, re.M)
