@@ -200,36 +200,59 @@ ilaw_result give_report(ilaw_report* report, const instance<Law>& made, const il
   return found.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
 }
 
-// The beginning of evaluate and initialise: hands on the instance and what is known of the batch.
-template <class Law, class Run>
-ilaw_result with_batch(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report, Run run) {
-  if (report && !sized::is_complete(report)) return ILAW_INVALID_ARGUMENT;
-  if (!opaque || !given) return refuse(report, "instance or batch is null");
-  if (!sized::is_complete(given)) return refuse(report, "struct_size of the batch is none of any version");
+// The beginning of evaluate and initialise: the instance, the batch, and the environment of laws as long as
+// the call lives. Where they are refused there is no batch, but a code.
+template <class Law>
+class batch_call {
+ public:
+  batch_call(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report)
+      : made(reinterpret_cast<const instance<Law>*>(opaque)) {
+    if (report && !sized::is_complete(report)) return;
+    if (!opaque || !given)
+      refuse(report, "instance or batch is null");
+    else if (!sized::is_complete(given))
+      refuse(report, "struct_size of the batch is none of any version");
+    else
+      open(*given, report);
+  }
+
+  const instance<Law>* made;
+  const ilaw_batch* batch = nullptr;
+  ilaw_result code = ILAW_INVALID_ARGUMENT;
+
+ private:
   // Copied only where the host knows less: a copy takes as long as what a law does at one node.
-  ilaw_batch copied;
-  const bool is_whole = sized::size_of(given) >= sizeof copied;
-  if (!is_whole) copied = sized::read(given);
-  const ilaw_batch& batch = is_whole ? *given : copied;
-  const instance<Law>& made = of<Law>(opaque);
-  if (batch.flags != 0) [[unlikely]]
-    if (const char* wrong = wrong_flags(made.capabilities, batch))
-      return refuse(report, wrong, ILAW_UNSUPPORTED);
-  const float_environment own;
-  return run(made, batch);
-}
+  void open(const ilaw_batch& given, ilaw_report* report) {
+    const ilaw_batch* all = &given;
+    if (sized::size_of(&given) < sizeof copied_) {
+      copied_ = sized::read(&given);
+      all = &copied_;
+    }
+    if (all->flags != 0) [[unlikely]]
+      if (const char* wrong = wrong_flags(made->capabilities, *all)) {
+        code = refuse(report, wrong, ILAW_UNSUPPORTED);
+        return;
+      }
+    batch = all;
+  }
+
+  ilaw_batch copied_;
+  float_environment environment_;
+};
 
 // by_scalar_fallback: as ilaw/ext/draft/profile.h counts them; may be null.
 template <class Law>
 ilaw_result ILAW_CALL evaluate_counting(const ilaw_instance* opaque, const ilaw_batch* given,
                                         ilaw_report* report, std::int64_t* by_scalar_fallback) {
-  return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
-    if (const char* wrong = wrong_batch(made, batch)) return refuse(report, wrong);
-    tally found;
-    if (batch.node_count > 0) (made.walk ? made.walk : walk_batch<Law>)(&made, batch, &found);
-    if (by_scalar_fallback) *by_scalar_fallback = found.by_scalar_fallback;
-    return give_report(report, made, batch, found);
-  });
+  const batch_call<Law> call(opaque, given, report);
+  if (!call.batch) return call.code;
+  const instance<Law>& made = *call.made;
+  const ilaw_batch& batch = *call.batch;
+  if (const char* wrong = wrong_batch(made, batch)) return refuse(report, wrong);
+  tally found;
+  if (batch.node_count > 0) (made.walk ? made.walk : walk_batch<Law>)(&made, batch, &found);
+  if (by_scalar_fallback) *by_scalar_fallback = found.by_scalar_fallback;
+  return give_report(report, made, batch, found);
 }
 template <class Law>
 ilaw_result ILAW_CALL evaluate(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
@@ -295,25 +318,27 @@ class first_states {
 
 template <class Law>
 ilaw_result ILAW_CALL initialise(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
-  return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
-    if (const char* wrong = wrong_initial(made, batch)) return refuse(report, wrong);
-    tally found;
-    const char* reason = nullptr;
-    if (made.state_size > 0) {
-      const first_states<Law> states(made, batch);
-      for (std::int64_t first = 0; first < batch.node_count; first += block_nodes) {
-        const std::int64_t left = batch.node_count - first;
-        const node_range nodes(batch, first, left < block_nodes ? left : block_nodes);
-        for (std::int64_t i = 0; i < nodes.count; ++i)
-          if (const char* wrong = states.write(nodes(i))) {
-            if (found.bad_count++ > 0) continue;
-            found.first_bad_node = nodes(i);
-            reason = wrong;
-          }
-      }
+  const batch_call<Law> call(opaque, given, report);
+  if (!call.batch) return call.code;
+  const instance<Law>& made = *call.made;
+  const ilaw_batch& batch = *call.batch;
+  if (const char* wrong = wrong_initial(made, batch)) return refuse(report, wrong);
+  tally found;
+  const char* reason = nullptr;
+  if (made.state_size > 0) {
+    const first_states<Law> states(made, batch);
+    for (std::int64_t first = 0; first < batch.node_count; first += block_nodes) {
+      const std::int64_t left = batch.node_count - first;
+      const node_range nodes(batch, first, left < block_nodes ? left : block_nodes);
+      for (std::int64_t i = 0; i < nodes.count; ++i)
+        if (const char* wrong = states.write(nodes(i))) {
+          if (found.bad_count++ > 0) continue;
+          found.first_bad_node = nodes(i);
+          reason = wrong;
+        }
     }
-    return give_report(report, made, batch, found, reason);
-  });
+  }
+  return give_report(report, made, batch, found, reason);
 }
 
 }  // namespace ilaw::kit::detail
