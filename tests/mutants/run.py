@@ -49,6 +49,7 @@ class Area(typing.NamedTuple):
 AREAS = {
     "plugins": Area("plugins", ["laws_test", "check_test:*Shipped*"]),
     "kit": Area("api/include/ilaw/kit", ["kit_test", "laws_test", "ctest kit_probe_is_checked", "check_test:*Shipped*"]),
+    "create": Area("api/include/ilaw/create.h", ["kit_test", "plain_c_test", "laws_test"]),
     "loader": Area("api/loader", ["loader_test", "loader_memory_test", "unusual_hosts_test"]),
     "search": Area("api/search", ["facets_test", "mesh_test"]),
     "coupled": Area("api/coupled", ["coupled_test", "coupled_made_test", "host_test", "closed_forms_test", "prestress_test",
@@ -94,7 +95,7 @@ def arguments():
 
 
 def area_of(file):
-    return max((len(area.folder), name) for name, area in AREAS.items() if file.startswith(area.folder + "/"))[1]
+    return max((len(area.folder), name) for name, area in AREAS.items() if f"{file}/".startswith(area.folder + "/"))[1]
 
 
 def place_of(mutant, text):

@@ -19,21 +19,15 @@
 #ifndef ILAW_BUILDING_PLUGIN
 #define ILAW_BUILDING_PLUGIN
 #endif
-#include <ilaw/ilaw.h>
+#include <ilaw/create.h>
 
 #include <fenv.h>
-#include <float.h>
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #if defined(__SSE2__)
 #include <xmmintrin.h>
 #endif
 
-enum { ILAW_PLAIN_MAX = 16 };          /* parameters, state variables, amounts of a law */
-enum { ILAW_PLAIN_MAX_STRUCT = 4096 }; /* no struct of any version is larger */
+enum { ILAW_PLAIN_MAX = 16 }; /* parameters, state variables, amounts of a law */
 
 /* A node in the axes of the host; n is the normal, vectors have zeros beyond the dimension. */
 typedef struct ilaw_node {
@@ -66,29 +60,15 @@ typedef struct ilaw_plain_law {
   uint32_t state_version; /* raise it whenever step interprets a stored state differently */
 } ilaw_plain_law;
 
-/* Axis of a table: a place in the axes of the parameter, and where its number comes from: the parameter that
- * is this field, or ILAW_PLAIN_TIME, or ILAW_PLAIN_COMPUTED. */
-enum { ILAW_PLAIN_TIME = -1, ILAW_PLAIN_COMPUTED = -2 };
-struct ilaw_plain_table {
-  uint32_t axis_count, place[3];
-  int source[3];
-  uint64_t count[3];
-  double *points[3], *values; /* in one block, which begins at points[0] */
-};
-
 struct ilaw_instance {
   const ilaw_plain_law* plain;
-  uint32_t dimension, per_node_count;
+  uint32_t dimension;
   ilaw_delassus_form form;
   ilaw_frame frame;
   ilaw_number_type numbers;
-  int given[ILAW_PLAIN_MAX];
-  ilaw_kind kind[ILAW_PLAIN_MAX];
+  struct ilaw_arguments arguments;
   uint32_t slot[ILAW_PLAIN_MAX]; /* among the arrays per node */
-  double number[ILAW_PLAIN_MAX];
-  struct ilaw_plain_table table[ILAW_PLAIN_MAX];
-  int rank[ILAW_PLAIN_MAX]; /* read first are numbers (0), then tables (1), then tables over these (2) */
-  const char* per_node[ILAW_PLAIN_MAX];
+  int rank[ILAW_PLAIN_MAX];      /* read first are numbers (0), then tables (1), then tables over these (2) */
 };
 
 /* Not ILAW_ENTRY itself: another library, opened with RTLD_GLOBAL, could take its name. */
@@ -141,62 +121,6 @@ static inline const char* ilaw_plain_wrong_array(int is_float, const void* value
   return (is_float ? values : floats) ? "an array is of other numbers than the setup's, or has both pointers"
                                       : NULL;
 }
-/* Whether a writer of ABI 1 can have set this struct_size. */
-static inline int ilaw_plain_is_sized(uint32_t struct_size, size_t least) {
-  return struct_size >= least && struct_size <= ILAW_PLAIN_MAX_STRUCT;
-}
-
-/* ---- messages ----------------------------------------------------------------------------------- */
-
-/* One line for the caller of create; text that does not fit is cut. */
-struct ilaw_plain_message {
-  char* text;
-  size_t size, used;
-};
-static inline void ilaw_plain_add(struct ilaw_plain_message* m, const char* format, ...) {
-  va_list values;
-  if (m->used + 1 >= m->size) return;
-  va_start(values, format);
-  const int length = vsnprintf(m->text + m->used, m->size - m->used, format, values);
-  va_end(values);
-  if (length > 0) m->used += (size_t)length;
-}
-#define ILAW_PLAIN_REFUSE(code, m, ...) (ilaw_plain_add(m, __VA_ARGS__), (code))
-
-/* With as few digits as read back to the same number, and with a dot whatever the locale of the host has. */
-static inline void ilaw_plain_add_number(struct ilaw_plain_message* m, double x) {
-  char text[48], *to = text;
-  int digits = 15;
-  do snprintf(text, sizeof text, "%.*g", digits, x);
-  while (digits++ < 17 && strtod(text, NULL) != x);
-  for (const char* c = text; *c; ++c)
-    if (strchr("+-0123456789einfa", *c))
-      *to++ = *c;
-    else if (to == text || to[-1] != '.')
-      *to++ = '.';
-  ilaw_plain_add(m, "%.*s", (int)(to - text), text);
-}
-
-/* What may be given to a parameter. */
-static inline void ilaw_plain_add_expected(struct ilaw_plain_message* m, const ilaw_parameter* p) {
-  const int is_endless = p->flags & ILAW_FLAG_ALLOWS_INFINITY || p->maximum == DBL_MAX;
-  if (p->kind == ILAW_KIND_CHOICE) {
-    ilaw_plain_add(m, "expected one of ");
-    for (uint32_t c = 0; c < p->choice_count; ++c)
-      ilaw_plain_add(m, "%s\"%s\"", c ? ", " : "", p->choices[c]);
-    return;
-  }
-  ilaw_plain_add(m, "expected a %snumber in %s", p->kind == ILAW_KIND_INTEGER ? "whole " : "",
-                 p->flags & ILAW_FLAG_EXCLUDES_MINIMUM ? "(" : "[");
-  ilaw_plain_add_number(m, p->minimum);
-  ilaw_plain_add(m, ", ");
-  if (is_endless)
-    ilaw_plain_add(m, "inf");
-  else
-    ilaw_plain_add_number(m, p->maximum);
-  ilaw_plain_add(m, is_endless && !(p->flags & ILAW_FLAG_ALLOWS_INFINITY) ? ")" : "]");
-}
-
 /* ---- parameters --------------------------------------------------------------------------------- */
 
 static inline double ilaw_plain_between(double a, double b, double part) {
@@ -206,14 +130,14 @@ static inline double ilaw_plain_between(double a, double b, double part) {
 /* Value of parameter p where it may be a table over quantities that the law computes: `computed` has a number
  * for each axis of the parameter; those of "time" and of fields are not read. */
 static inline double ilaw_value(const ilaw_node* node, uint32_t p, const double* computed) {
-  const struct ilaw_plain_table* t = &node->instance->table[p];
-  if (node->instance->kind[p] != ILAW_KIND_VALUE_TABLE) return node->value[p];
+  const struct ilaw_table* t = &node->instance->arguments.table[p];
+  if (t->axis_count == 0) return node->value[p];
   uint64_t low[3] = {0, 0, 0};
   double part[3] = {0.0, 0.0, 0.0}, corner[8];
   for (uint32_t a = 0; a < t->axis_count; ++a) {
-    const double x = t->source[a] >= 0                 ? node->value[t->source[a]]
-                     : t->source[a] == ILAW_PLAIN_TIME ? node->time
-                                                       : computed[t->place[a]];
+    const double x = t->source[a] >= 0           ? node->value[t->source[a]]
+                     : t->source[a] == ILAW_TIME ? node->time
+                                                 : computed[t->place[a]];
     const double* points = t->points[a];
     uint64_t high = t->count[a] - 1;
     if (high == 0) continue;
@@ -239,125 +163,6 @@ static inline double ilaw_value(const ilaw_node* node, uint32_t p, const double*
   return corner[0];
 }
 
-static inline int ilaw_plain_is_allowed(const ilaw_parameter* p, double x) {
-  if (x == INFINITY) return (p->flags & ILAW_FLAG_ALLOWS_INFINITY) != 0;
-  if (p->kind == ILAW_KIND_INTEGER && x != floor(x)) return 0;
-  return (p->flags & ILAW_FLAG_EXCLUDES_MINIMUM ? x > p->minimum : x >= p->minimum) && x <= p->maximum;
-}
-
-static inline ilaw_result ilaw_plain_check_number(const ilaw_parameter* p, double x,
-                                                  struct ilaw_plain_message* m) {
-  if (ilaw_plain_is_allowed(p, x)) return ILAW_OK;
-  ilaw_plain_add(m, "parameter '%s' = ", p->name);
-  ilaw_plain_add_number(m, x);
-  ilaw_plain_add(m, " is not allowed: ");
-  ilaw_plain_add_expected(m, p);
-  return ILAW_INVALID_PARAMETER;
-}
-
-/* Checks axis i of the table of parameter p. */
-static inline ilaw_result ilaw_plain_keep_axis(ilaw_instance* own, uint32_t p, const ilaw_axis* axis,
-                                               uint32_t i, struct ilaw_plain_message* m) {
-  const ilaw_law* law = &own->plain->law;
-  const ilaw_parameter* known = law->parameters[p];
-  struct ilaw_plain_table* t = &own->table[p];
-  uint32_t place = 0;
-  while (place < known->axis_count && strcmp(known->axes[place], axis->name) != 0) ++place;
-  if (place == known->axis_count) {
-    ilaw_plain_add(m, "parameter '%s': axis '%s' of the table is unknown: expected one of ", known->name,
-                   axis->name);
-    for (uint32_t k = 0; k < known->axis_count; ++k)
-      ilaw_plain_add(m, "%s'%s'", k ? ", " : "", known->axes[k]);
-    return ILAW_INVALID_PARAMETER;
-  }
-  for (uint32_t j = 0; j < i; ++j)
-    if (t->place[j] == place)
-      return ILAW_PLAIN_REFUSE(ILAW_INVALID_PARAMETER, m, "parameter '%s': the table has twice the axis %s",
-                               known->name, axis->name);
-  for (uint64_t k = 0; k < axis->count; ++k)
-    if (!isfinite(axis->points[k]) || (k > 0 && !(axis->points[k] > axis->points[k - 1]))) {
-      ilaw_plain_add(m, "parameter '%s': point %llu of axis '%s' is ", known->name, (unsigned long long)k,
-                     axis->name);
-      ilaw_plain_add_number(m, axis->points[k]);
-      return ILAW_PLAIN_REFUSE(ILAW_INVALID_PARAMETER, m, ": expected finite, increasing points");
-    }
-  t->place[i] = place, t->count[i] = axis->count;
-  t->source[i] = strcmp(axis->name, "time") == 0 ? ILAW_PLAIN_TIME : ILAW_PLAIN_COMPUTED;
-  for (uint32_t f = 0; f < law->parameter_count; ++f)
-    if (strcmp(law->parameters[f]->name, axis->name) == 0) t->source[i] = (int)f;
-  return ILAW_OK;
-}
-
-static inline ilaw_result ilaw_plain_keep_table(ilaw_instance* own, uint32_t p, const ilaw_argument* a,
-                                                struct ilaw_plain_message* m) {
-  const ilaw_parameter* known = own->plain->law.parameters[p];
-  struct ilaw_plain_table* t = &own->table[p];
-  const char* wrong = !a->values ? "no values" : NULL;
-  uint64_t size = 1, stored = 0;
-  if (a->axis_count < 1 || a->axis_count > 3 || !a->axes)
-    wrong = "no axis or more than three, expected 1 to 3";
-  for (uint32_t i = 0; !wrong && i < a->axis_count; ++i) {
-    const ilaw_axis* axis = a->axes[i];
-    if (!axis || !ilaw_plain_is_sized(axis->struct_size, ILAW_AXIS_SIZE_1_0))
-      wrong = "an axis that is null or whose struct_size is of no version";
-    else if (!axis->name || !axis->points || axis->count < 1)
-      wrong = "an axis without a name or point, expected at least 1 point";
-    else if (axis->count > ILAW_TABLE_MAX_VALUES / size)
-      wrong = "more than 16777216 values";
-    if (wrong) break;
-    const ilaw_result code = ilaw_plain_keep_axis(own, p, axis, i, m);
-    if (code != ILAW_OK) return code;
-    size *= axis->count, stored += axis->count;
-  }
-  if (wrong)
-    return ILAW_PLAIN_REFUSE(ILAW_INVALID_PARAMETER, m, "parameter '%s': the table has %s", known->name,
-                             wrong);
-  for (uint64_t k = 0; k < size; ++k) {
-    const ilaw_result code = ilaw_plain_check_number(known, a->values[k], m);
-    if (code != ILAW_OK) return code;
-  }
-  double* memory = (double*)malloc((stored + size) * sizeof(double));
-  if (!memory) return ILAW_PLAIN_REFUSE(ILAW_OUT_OF_MEMORY, m, "out of memory");
-  t->axis_count = a->axis_count;
-  for (uint32_t i = 0; i < t->axis_count; memory += t->count[i++])
-    t->points[i] = (double*)memcpy(memory, a->axes[i]->points, t->count[i] * sizeof(double));
-  t->values = (double*)memcpy(memory, a->values, size * sizeof(double));
-  return ILAW_OK;
-}
-
-static inline ilaw_result ilaw_plain_keep(ilaw_instance* own, uint32_t p, const ilaw_argument* a,
-                                          struct ilaw_plain_message* m) {
-  static const char* const kinds[] = {"a number", "a text", "a table", "a value per node"};
-  const ilaw_parameter* known = own->plain->law.parameters[p];
-  const int is_choice = known->kind == ILAW_KIND_CHOICE;
-  const char* text = a->kind == ILAW_KIND_VALUE_TEXT && a->text ? a->text : NULL;
-  if (own->given[p]++)
-    return ILAW_PLAIN_REFUSE(ILAW_INVALID_PARAMETER, m, "parameter '%s' is given twice", known->name);
-  if (known->flags & ILAW_FLAG_NEEDS_SPINS && own->form != ILAW_DELASSUS_TRANSVERSE_SPIN)
-    return ILAW_PLAIN_REFUSE(
-        ILAW_INVALID_PARAMETER, m,
-        "parameter '%s' needs spins, form %u of H has none: expected 16 (transverse_spin)", known->name,
-        own->form);
-  own->kind[p] = a->kind, own->number[p] = a->number;
-  if (a->kind == ILAW_KIND_VALUE_NUMBER && !is_choice) return ilaw_plain_check_number(known, a->number, m);
-  for (uint32_t c = 0; is_choice && text && c < known->choice_count; ++c)
-    if (strcmp(known->choices[c], text) == 0) return own->number[p] = c, ILAW_OK;
-  if (a->kind == ILAW_KIND_VALUE_TABLE && known->axis_count > 0) return ilaw_plain_keep_table(own, p, a, m);
-  if (a->kind == ILAW_KIND_VALUE_PER_NODE && known->flags & ILAW_FLAG_ALLOWS_PER_NODE) {
-    own->slot[p] = own->per_node_count;
-    own->per_node[own->per_node_count++] = known->name;
-    return ILAW_OK;
-  }
-  if (is_choice && text)
-    ilaw_plain_add(m, "parameter '%s' = \"%s\" is not allowed: ", known->name, text);
-  else
-    ilaw_plain_add(m, "parameter '%s' was given as %s%s%s%s: ", known->name,
-                   a->kind < sizeof kinds / sizeof *kinds ? kinds[a->kind] : "a value of unknown kind",
-                   text ? " (\"" : "", text ? text : "", text ? "\")" : "");
-  ilaw_plain_add_expected(m, known);
-  return ILAW_INVALID_PARAMETER;
-}
-
 /* ---- the floating-point environment -------------------------------------------------------------- */
 
 /* Rounding to nearest, subnormal numbers and no traps until fesetenv(host) brings the host's back. */
@@ -372,126 +177,48 @@ static inline void ilaw_plain_enter(fenv_t* host) {
 /* ---- instances ---------------------------------------------------------------------------------- */
 
 static inline void ILAW_CALL ilaw_plain_destroy(ilaw_instance* own) {
-  for (uint32_t p = 0; own && p < ILAW_PLAIN_MAX; ++p) free(own->table[p].points[0]);
+  if (own) ilaw_arguments_free(&own->arguments);
   free(own);
 }
 
-/* The order in which parameters are read. A field that is an axis must be given, and not as a table over more
- * than time: others may not have been read before it. */
-static inline ilaw_result ilaw_plain_order(ilaw_instance* own, struct ilaw_plain_message* m) {
-  const ilaw_law* law = &own->plain->law;
-  for (uint32_t p = 0; p < law->parameter_count; ++p)
-    for (uint32_t a = 0; a < own->table[p].axis_count; ++a) {
-      const int source = own->table[p].source[a], rank = source == ILAW_PLAIN_TIME ? 1 : 2;
+/* The order in which parameters are read, and the places of those with a value per node. */
+static inline void ilaw_plain_order(ilaw_instance* own) {
+  const struct ilaw_arguments* given = &own->arguments;
+  for (uint32_t k = 0; k < given->per_node_count; ++k) own->slot[given->per_node[k]] = k;
+  for (uint32_t p = 0; p < own->plain->law.parameter_count; ++p)
+    for (uint32_t a = 0; a < given->table[p].axis_count; ++a) {
+      const int rank = given->table[p].source[a] == ILAW_TIME ? 1 : 2;
       if (own->rank[p] < rank) own->rank[p] = rank;
     }
-  for (uint32_t p = 0; p < law->parameter_count; ++p)
-    for (uint32_t a = 0; a < own->table[p].axis_count; ++a) {
-      const int field = own->table[p].source[a];
-      if (field >= 0 && (!own->given[field] || own->rank[field] > 1))
-        return ILAW_PLAIN_REFUSE(ILAW_INVALID_PARAMETER, m,
-                                 "parameter '%s' is a table over '%s': expected a value, a value per node or "
-                                 "a table over time for that",
-                                 law->parameters[p]->name, law->parameters[field]->name);
-    }
-  return ILAW_OK;
-}
-
-static inline ilaw_result ilaw_plain_keep_all(ilaw_instance* own, const ilaw_setup* s,
-                                              struct ilaw_plain_message* m) {
-  const ilaw_law* law = &own->plain->law;
-  if (s->argument_count && !s->arguments)
-    return ILAW_PLAIN_REFUSE(ILAW_INVALID_ARGUMENT, m, "arguments is null, expected %u pointers",
-                             s->argument_count);
-  for (uint32_t p = 0; p < law->parameter_count; ++p) own->number[p] = law->parameters[p]->default_value;
-  for (uint32_t i = 0; i < s->argument_count; ++i) {
-    const ilaw_argument* a = s->arguments[i];
-    uint32_t p = 0;
-    if (!a || !ilaw_plain_is_sized(a->struct_size, ILAW_ARGUMENT_SIZE_1_0) || !a->name)
-      return ILAW_PLAIN_REFUSE(ILAW_INVALID_ARGUMENT, m,
-                               "argument %u is null, has no name or a struct_size not from %u to %u", i,
-                               (unsigned)ILAW_ARGUMENT_SIZE_1_0, (unsigned)ILAW_PLAIN_MAX_STRUCT);
-    while (p < law->parameter_count && strcmp(law->parameters[p]->name, a->name) != 0) ++p;
-    if (p == law->parameter_count) {
-      ilaw_plain_add(m, "unknown parameter '%s': expected one of ", a->name);
-      for (uint32_t k = 0; k < p; ++k) ilaw_plain_add(m, "%s%s", k ? ", " : "", law->parameters[k]->name);
-      return ILAW_INVALID_PARAMETER;
-    }
-    const ilaw_result code = ilaw_plain_keep(own, p, a, m);
-    if (code != ILAW_OK) return code;
-  }
-  for (uint32_t p = 0; p < law->parameter_count; ++p)
-    if (law->parameters[p]->flags & ILAW_FLAG_REQUIRED && !own->given[p]) {
-      ilaw_plain_add(m, "parameter '%s' is missing: ", law->parameters[p]->name);
-      ilaw_plain_add_expected(m, law->parameters[p]);
-      return ILAW_INVALID_PARAMETER;
-    }
-  return ilaw_plain_order(own, m);
-}
-
-/* Whether a number of a setup is exactly one entry of a mask; if not, says so. format: its name with %u. */
-static inline int ilaw_plain_serves(struct ilaw_plain_message* m, const char* format, uint32_t x,
-                                    uint32_t mask) {
-  if ((x & mask) != 0 && (x & (x - 1)) == 0) return 1;
-  ilaw_plain_add(m, format, x);
-  ilaw_plain_add(m, " is not served: expected one of");
-  for (uint32_t bit = 1; bit != 0; bit <<= 1)
-    if (mask & bit) ilaw_plain_add(m, " %u", bit);
-  return 0;
-}
-
-static inline ilaw_result ilaw_plain_check_setup(const ilaw_law* law, const ilaw_setup* s,
-                                                 struct ilaw_plain_message* m) {
-  const ilaw_delassus_forms spins = s->dimension == 3 ? 0 : ILAW_DELASSUS_TRANSVERSE_SPIN;
-  if (s->dimension < 1 || s->dimension > 3 || !(1U << s->dimension & law->dimensions)) {
-    ilaw_plain_add(m, "dimension %u is not served: expected", s->dimension);
-    for (unsigned d = 1; d <= 3; ++d)
-      if (law->dimensions & 1U << d) ilaw_plain_add(m, " %u", d);
-    return ILAW_UNSUPPORTED;
-  }
-  if (!ilaw_plain_serves(m, "form %u of H", s->delassus_form, law->delassus_forms & ~spins) ||
-      !ilaw_plain_serves(m, "frame %u", s->frame, law->frames) ||
-      !ilaw_plain_serves(m, "number type %u", s->numbers, law->numbers))
-    return ILAW_UNSUPPORTED;
-  if (s->flags)
-    return ILAW_PLAIN_REFUSE(ILAW_UNSUPPORTED, m, "flags 0x%llx are not known: expected 0",
-                             (unsigned long long)s->flags);
-  if (s->has_tangent > 1)
-    return ILAW_PLAIN_REFUSE(ILAW_INVALID_ARGUMENT, m, "has_tangent %u is unknown: expected 0 or 1",
-                             s->has_tangent);
-  return ILAW_OK;
 }
 
 static inline ilaw_result ILAW_CALL ilaw_plain_create(const char* id, const ilaw_setup* s,
                                                       ilaw_instance** instance, char* text, size_t size) {
-  struct ilaw_plain_message m = {text, text ? size : 0, 0};
+  struct ilaw_message m = ilaw_message_in(id ? id : "null", text, size);
   const ilaw_plugin* plugin = ilaw_plain_plugin();
   const ilaw_law* law = NULL;
-  if (m.size > 0) text[0] = '\0';
   if (!instance) return ILAW_INVALID_ARGUMENT;
   *instance = NULL;
-  ilaw_plain_add(&m, "law '%s': ", id ? id : "null");
   for (uint32_t k = 0; id && k < plugin->law_count; ++k)
     if (strcmp(plugin->laws[k]->id, id) == 0) law = plugin->laws[k];
-  if (!law)
-    return ILAW_PLAIN_REFUSE(ILAW_INVALID_ARGUMENT, &m, "library '%s' has no law of this id", plugin->name);
-  if (!s || !ilaw_plain_is_sized(s->struct_size, ILAW_SETUP_SIZE_1_0))
-    return ILAW_PLAIN_REFUSE(ILAW_INVALID_ARGUMENT, &m, "setup is null or its struct_size not from %u to %u",
-                             (unsigned)ILAW_SETUP_SIZE_1_0, (unsigned)ILAW_PLAIN_MAX_STRUCT);
+  if (!law) return ilaw_refuse(&m, ILAW_INVALID_ARGUMENT, "library '%s' has no law of this id", plugin->name);
+  if (!s || !ilaw_create_is_sized(s->struct_size, ILAW_SETUP_SIZE_1_0))
+    return ilaw_refuse(&m, ILAW_INVALID_ARGUMENT, "setup is null or its struct_size not from %u to %u",
+                       (unsigned)ILAW_SETUP_SIZE_1_0, (unsigned)ILAW_CREATE_MAX_STRUCT);
   fenv_t host;
   ilaw_plain_enter(&host);
   ilaw_instance* own = NULL;
-  ilaw_result code = ilaw_plain_check_setup(law, s, &m);
-  if (code == ILAW_OK && !(own = (ilaw_instance*)calloc(1, sizeof *own)))
-    code = ILAW_PLAIN_REFUSE(ILAW_OUT_OF_MEMORY, &m, "out of memory");
+  ilaw_result code = ILAW_OK;
+  if (!(own = (ilaw_instance*)calloc(1, sizeof *own)))
+    code = ilaw_refuse(&m, ILAW_OUT_OF_MEMORY, "out of memory");
   if (code == ILAW_OK) {
     own->plain = (const ilaw_plain_law*)(const void*)law;
     own->dimension = s->dimension, own->form = s->delassus_form, own->frame = s->frame;
     own->numbers = s->numbers;
-    code = ilaw_plain_keep_all(own, s, &m);
+    code = ilaw_create_read(law, s, &own->arguments, &m);
+    if (code == ILAW_OK) ilaw_plain_order(own);
   }
   fesetenv(&host);
-  if (code == ILAW_OK && m.size > 0) text[0] = '\0';
   if (code == ILAW_OK)
     *instance = own;
   else
@@ -505,7 +232,7 @@ static inline ilaw_inputs ilaw_plain_inputs(const ilaw_instance* own) {
 }
 
 static inline ilaw_result ILAW_CALL ilaw_plain_info(const ilaw_instance* own, ilaw_instance_info* out) {
-  if (!own || !out || !ilaw_plain_is_sized(out->struct_size, ILAW_INSTANCE_INFO_SIZE_1_0))
+  if (!own || !out || !ilaw_create_is_sized(out->struct_size, ILAW_INSTANCE_INFO_SIZE_1_0))
     return ILAW_INVALID_ARGUMENT;
   const ilaw_law* law = &own->plain->law;
   ilaw_instance_info info;
@@ -513,7 +240,8 @@ static inline ilaw_result ILAW_CALL ilaw_plain_info(const ilaw_instance* own, il
   info.struct_size = out->struct_size, info.inputs = ilaw_plain_inputs(own);
   info.state_size = info.state_variable_count = law->state_variable_count;
   info.state_variables = law->state_variables;
-  info.per_node_parameters = own->per_node, info.per_node_parameter_count = own->per_node_count;
+  info.per_node_parameters = own->arguments.per_node_names;
+  info.per_node_parameter_count = own->arguments.per_node_count;
   info.capabilities = law->capabilities, info.permissions = law->permissions;
   info.state_version = own->plain->state_version;
   info.amounts = law->amounts, info.amount_count = law->amount_count;
@@ -603,8 +331,8 @@ static inline const char* ilaw_plain_wrong_arrays(const ilaw_instance* own, cons
     wrong = ilaw_plain_wrong_array(is_float, a->values, a->floats, outputs[k].missing);
     if (ilaw_plain_collides(a, b->node_count, outputs[k].components)) wrong = outputs[k].stacked;
   }
-  if (own->per_node_count && !b->per_node_parameters) return "per_node_parameters is null";
-  for (uint32_t k = 0; k < own->per_node_count && !wrong; ++k)
+  if (own->arguments.per_node_count && !b->per_node_parameters) return "per_node_parameters is null";
+  for (uint32_t k = 0; k < own->arguments.per_node_count && !wrong; ++k)
     wrong =
         ilaw_plain_wrong_array(is_float, b->per_node_parameters[k].values, b->per_node_parameters[k].floats,
                                "values of a per-node parameter are null");
@@ -683,12 +411,11 @@ static inline const char* ilaw_plain_read(const ilaw_instance* own, const ilaw_b
     for (uint32_t p = 0; p < law->parameter_count; ++p) {
       static const double none[3] = {0.0, 0.0, 0.0};
       if (own->rank[p] != rank) continue;
-      node->value[p] = own->number[p];
-      if (own->kind[p] == ILAW_KIND_VALUE_TABLE) node->value[p] = ilaw_value(node, p, none);
-      if (own->kind[p] != ILAW_KIND_VALUE_PER_NODE) continue;
+      node->value[p] = own->arguments.number[p];
+      if (own->arguments.table[p].axis_count > 0) node->value[p] = ilaw_value(node, p, none);
+      if (own->arguments.kind[p] != ILAW_KIND_VALUE_PER_NODE) continue;
       node->value[p] = ilaw_get(&b->per_node_parameters[own->slot[p]], i, 0);
-      if (!ilaw_plain_is_allowed(law->parameters[p], node->value[p]))
-        return "a per-node parameter is out of range";
+      if (!ilaw_is_allowed(law->parameters[p], node->value[p])) return "a per-node parameter is out of range";
     }
   return NULL;
 }
@@ -818,10 +545,11 @@ static inline ilaw_result ilaw_plain_call(ilaw_plain_batch_function function, co
                                           const ilaw_batch* given, ilaw_report* report) {
   ilaw_batch b;
   fenv_t host;
-  if (report && !ilaw_plain_is_sized(report->struct_size, ILAW_REPORT_SIZE_1_0)) return ILAW_INVALID_ARGUMENT;
+  if (report && !ilaw_create_is_sized(report->struct_size, ILAW_REPORT_SIZE_1_0))
+    return ILAW_INVALID_ARGUMENT;
   if (!own || !given)
     return ilaw_plain_report(report, ILAW_INVALID_ARGUMENT, 0, -1, "instance or batch is null", INFINITY);
-  if (!ilaw_plain_is_sized(given->struct_size, ILAW_BATCH_SIZE_1_0))
+  if (!ilaw_create_is_sized(given->struct_size, ILAW_BATCH_SIZE_1_0))
     return ilaw_plain_report(report, ILAW_INVALID_ARGUMENT, 0, -1,
                              "struct_size of the batch is none of any version", INFINITY);
   memset(&b, 0, sizeof b);

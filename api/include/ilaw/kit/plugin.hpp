@@ -25,16 +25,18 @@ inline constexpr ilaw_kit_walk walks[] = {walk_batch<Laws<double> >...};
 // The functions of the law at a place of its library, which the law does not know.
 template <std::size_t Place, class Law>
 struct functions {
+  static const ilaw_law& abi();
+
   static ilaw_result ILAW_CALL create(const char* id, const ilaw_setup* setup, ilaw_instance** result,
                                       char* text, std::size_t text_size) {
-    message said(Law::card.id, text, text_size);
+    ilaw_message error = ilaw_message_in(Law::card.id, text, text_size);
     if (!result) return ILAW_INVALID_ARGUMENT;
     if (const char* cap = unknown_level()) {
       *result = nullptr;
-      return said.refuse(ILAW_UNSUPPORTED, "ILAW_ISA is '%s', expected baseline, v3 or v4", cap);
+      return ilaw_refuse(&error, ILAW_UNSUPPORTED, "ILAW_ISA is '%s', expected baseline, v3 or v4", cap);
     }
     const ilaw_kit_walk* best = best_walks();
-    return detail::create<Law>(id, setup, best ? best[Place] : nullptr, result, said);
+    return detail::create<Law>(abi(), id, setup, best ? best[Place] : nullptr, result, error);
   }
 
   // The level whose walks an instance uses.
@@ -97,6 +99,11 @@ inline constexpr ilaw_law abi_law = [] {
                   .evaluate = evaluate<Law>,
                   .extension = own::extension};
 }();
+
+template <std::size_t Place, class Law>
+const ilaw_law& functions<Place, Law>::abi() {
+  return abi_law<Place, Law>;
+}
 
 // The description of a library with these laws; Checked: whether all of them are laws.
 template <bool Checked, class... Laws>

@@ -93,6 +93,14 @@ ILAW_KIT_INLINE void transpose(four (&m)[4]) {
   for (; i < n.count; ++i)
     for (int c = 0; c < count; ++c) values[n(i) * stride + c] = from[c * block_nodes + i];
 }
+// Numbers side by side, of floats to doubles and back.
+template <class From, class To>
+[[gnu::noinline]] void convert(const From* from, To* to, std::int64_t count) {
+  std::int64_t k = 0;
+  for (; k + register_lanes <= count; k += register_lanes)
+    put_one(narrowed<To>(widened(one_at(from + k))), to + k);
+  for (; k < count; ++k) to[k] = static_cast<To>(from[k]);
+}
 // Components that lie in other lines of memory: node by node.
 template <class T, class From>
 [[gnu::noinline]] inline void gather_three(const From* values, std::int64_t stride, std::int64_t component,

@@ -12,28 +12,17 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // ---- the loop of a batch
 
-// Null: there is none for floats, which are then converted by blocks: a solver takes longer than that, and of
-// a step beside one little is to be gained where a state of doubles moves with it.
-template <class Law, class Number, template <class> class Frame, template <class> class Delassus>
-typename batch_walk<Number>::run_function loop_of(const instance<Law>& made) {
-  using V = pack;
-  using plain = kernel<Law, V, Number, Frame, Delassus>;
-  using Wide = law_on_t<Law, V>;
+template <class Law, template <class> class Frame, template <class> class Delassus>
+run_function<double> loop_of(const instance<Law>& made) {
+  using plain = kernel<Law, pack, double, Frame, Delassus>;
+  using solver = solver_kernel<Law, pack, double, Frame, Delassus>;
+  using Wide = law_on_t<Law, pack>;
   using node_type = typename plain::node_type;
-  constexpr bool has_solver = can_ask<Wide, node_type>, is_chosen = can_choose<Wide, node_type>;
-  if constexpr (std::is_same_v<Number, float> && has_solver &&
-                (has_state<Law> || has_history<Law> || !is_chosen)) {
-    return nullptr;
-  } else if constexpr (has_solver && !is_chosen) {
-    return solver_kernel<Law, V, Number, Frame, Delassus>::run;
+  if constexpr (can_ask<Wide, node_type> && !can_choose<Wide, node_type>) {
+    return solver::run;
   } else {
-    if constexpr (has_solver)
-      if (made.asks) {
-        if constexpr (std::is_same_v<Number, float>)
-          return nullptr;
-        else
-          return solver_kernel<Law, V, Number, Frame, Delassus>::run;
-      }
+    if constexpr (can_ask<Wide, node_type>)
+      if (made.asks) return solver::run;
     static_assert(
         requires(const Wide& law, node_type& n) { law.step(n); },
         "the law has neither step nor ask for nodes of this form of H and frame");
@@ -41,34 +30,46 @@ typename batch_walk<Number>::run_function loop_of(const instance<Law>& made) {
   }
 }
 
-template <class Law, class Number>
-typename batch_walk<Number>::run_function choose_loop(const instance<Law>& made) {
+template <class Law>
+run_function<double> choose_loop(const instance<Law>& made) {
   const bool is_local = made.frame == ILAW_FRAME_LOCAL;
   if constexpr (serves_spins<Law>)
     if (made.has_spins()) {
-      if (is_local) return loop_of<Law, Number, local_frame, transverse_spin>(made);
+      if (is_local) return loop_of<Law, local_frame, transverse_spin>(made);
       if constexpr (needs_no_tangents<Law>)
-        if (!made.has_tangent) return loop_of<Law, Number, normal_frame, transverse_spin>(made);
-      return loop_of<Law, Number, axes_frame, transverse_spin>(made);
+        if (!made.has_tangent) return loop_of<Law, normal_frame, transverse_spin>(made);
+      return loop_of<Law, axes_frame, transverse_spin>(made);
     }
   if constexpr (serves_transverse<Law>)
     if (made.is_transverse()) {
-      if (is_local) return loop_of<Law, Number, local_frame, transverse>(made);
+      if (is_local) return loop_of<Law, local_frame, transverse>(made);
       if constexpr (needs_no_tangents<Law>)
-        if (made.dimension == 3 && !made.has_tangent)
-          return loop_of<Law, Number, normal_frame, transverse>(made);
-      return loop_of<Law, Number, axes_frame, transverse>(made);
+        if (made.dimension == 3 && !made.has_tangent) return loop_of<Law, normal_frame, transverse>(made);
+      return loop_of<Law, axes_frame, transverse>(made);
     }
   if constexpr (serves_full<Law>) {
-    if (is_local) return loop_of<Law, Number, local_frame, full>(made);
-    return loop_of<Law, Number, axes_frame, full>(made);
+    if (is_local) return loop_of<Law, local_frame, full>(made);
+    return loop_of<Law, axes_frame, full>(made);
   }
+  return nullptr;
+}
+// Floats have a loop of their own where a node takes so little that to convert them by blocks would count: in
+// the local frame, without solver. Null elsewhere.
+template <class Law>
+run_function<float> choose_float_loop([[maybe_unused]] const instance<Law>& made) {
+  using plain = kernel<Law, pack, float, local_frame, transverse>;
+  using Wide = law_on_t<Law, pack>;
+  using node_type = typename plain::node_type;
+  constexpr bool is_plain =
+      !can_ask<Wide, node_type> || (can_choose<Wide, node_type> && !has_state<Law> && !has_history<Law>);
+  if constexpr (serves_transverse<Law> && is_plain)
+    if (made.is_transverse() && !made.has_spins() && made.frame == ILAW_FRAME_LOCAL && !made.asks)
+      return plain::run;
   return nullptr;
 }
 
 template <class Law, class Host, class Number>
-tally walk_with(const instance<Law>& made, const ilaw_batch& batch,
-                typename batch_walk<Number>::run_function loop) {
+tally walk_with(const instance<Law>& made, const ilaw_batch& batch, run_function<Number> loop) {
   const Law law = made.at(batch.time);
   constexpr int columns = 2 * (state_numbers<Law> + (has_history<Law> || has_state<Law> ? 6 : 0));
   alignas(64) double state_scratch[columns * block_nodes + 1];
@@ -76,20 +77,19 @@ tally walk_with(const instance<Law>& made, const ilaw_batch& batch,
   batch_walk<Host, Number, has_window<Law>> walk(made, batch, state_scratch, parameter_scratch);
   return walk.run(loop, &law);
 }
-template <class Law>
-tally walk_in(const instance<Law>& made, const ilaw_batch& batch) {
-  if (made.numbers == ILAW_NUMBERS_DOUBLE)
-    return walk_with<Law, double, double>(made, batch, choose_loop<Law, double>(made));
-  if (const auto loop = choose_loop<Law, float>(made)) return walk_with<Law, float, float>(made, batch, loop);
-  return walk_with<Law, float, double>(made, batch, choose_loop<Law, double>(made));
-}
 
 // An ilaw_kit_walk: a checked batch from end to end, compiled for this level.
 // Not inlined: nothing of it may be computed before the floating-point environment is set.
 template <class Law>
 [[gnu::noinline]] void walk_batch(const void* opaque, const ilaw_batch& batch, void* found) {
   const auto& made = *static_cast<const instance<Law>*>(opaque);
-  *static_cast<tally*>(found) = walk_in(made, batch);
+  auto& all = *static_cast<tally*>(found);
+  if (made.numbers == ILAW_NUMBERS_DOUBLE)
+    all = walk_with<Law, double>(made, batch, choose_loop(made));
+  else if (const auto loop = choose_float_loop(made))
+    all = walk_with<Law, float>(made, batch, loop);
+  else
+    all = walk_with<Law, float>(made, batch, choose_loop(made));
 }
 
 // ---- why a node is bad
@@ -200,36 +200,59 @@ ilaw_result give_report(ilaw_report* report, const instance<Law>& made, const il
   return found.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
 }
 
-// The beginning of evaluate and initialise: hands on the instance and what is known of the batch.
-template <class Law, class Run>
-ilaw_result with_batch(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report, Run run) {
-  if (report && !sized::is_complete(report)) return ILAW_INVALID_ARGUMENT;
-  if (!opaque || !given) return refuse(report, "instance or batch is null");
-  if (!sized::is_complete(given)) return refuse(report, "struct_size of the batch is none of any version");
+// The beginning of evaluate and initialise: the instance, the batch, and the environment of laws as long as
+// the call lives. Where they are refused there is no batch, but a code.
+template <class Law>
+class batch_call {
+ public:
+  batch_call(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report)
+      : made(reinterpret_cast<const instance<Law>*>(opaque)) {
+    if (report && !sized::is_complete(report)) return;
+    if (!opaque || !given)
+      refuse(report, "instance or batch is null");
+    else if (!sized::is_complete(given))
+      refuse(report, "struct_size of the batch is none of any version");
+    else
+      open(*given, report);
+  }
+
+  const instance<Law>* made;
+  const ilaw_batch* batch = nullptr;
+  ilaw_result code = ILAW_INVALID_ARGUMENT;
+
+ private:
   // Copied only where the host knows less: a copy takes as long as what a law does at one node.
-  ilaw_batch copied;
-  const bool is_whole = sized::size_of(given) >= sizeof copied;
-  if (!is_whole) copied = sized::read(given);
-  const ilaw_batch& batch = is_whole ? *given : copied;
-  const instance<Law>& made = of<Law>(opaque);
-  if (batch.flags != 0) [[unlikely]]
-    if (const char* wrong = wrong_flags(made.capabilities, batch))
-      return refuse(report, wrong, ILAW_UNSUPPORTED);
-  const float_environment own;
-  return run(made, batch);
-}
+  void open(const ilaw_batch& given, ilaw_report* report) {
+    const ilaw_batch* all = &given;
+    if (sized::size_of(&given) < sizeof copied_) {
+      copied_ = sized::read(&given);
+      all = &copied_;
+    }
+    if (all->flags != 0) [[unlikely]]
+      if (const char* wrong = wrong_flags(made->capabilities, *all)) {
+        code = refuse(report, wrong, ILAW_UNSUPPORTED);
+        return;
+      }
+    batch = all;
+  }
+
+  ilaw_batch copied_;
+  float_environment environment_;
+};
 
 // by_scalar_fallback: as ilaw/ext/draft/profile.h counts them; may be null.
 template <class Law>
 ilaw_result ILAW_CALL evaluate_counting(const ilaw_instance* opaque, const ilaw_batch* given,
                                         ilaw_report* report, std::int64_t* by_scalar_fallback) {
-  return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
-    if (const char* wrong = wrong_batch(made, batch)) return refuse(report, wrong);
-    tally found;
-    if (batch.node_count > 0) (made.walk ? made.walk : walk_batch<Law>)(&made, batch, &found);
-    if (by_scalar_fallback) *by_scalar_fallback = found.by_scalar_fallback;
-    return give_report(report, made, batch, found);
-  });
+  const batch_call<Law> call(opaque, given, report);
+  if (!call.batch) return call.code;
+  const instance<Law>& made = *call.made;
+  const ilaw_batch& batch = *call.batch;
+  if (const char* wrong = wrong_batch(made, batch)) return refuse(report, wrong);
+  tally found;
+  if (batch.node_count > 0) (made.walk ? made.walk : walk_batch<Law>)(&made, batch, &found);
+  if (by_scalar_fallback) *by_scalar_fallback = found.by_scalar_fallback;
+  return give_report(report, made, batch, found);
 }
 template <class Law>
 ilaw_result ILAW_CALL evaluate(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
@@ -295,25 +318,27 @@ class first_states {
 
 template <class Law>
 ilaw_result ILAW_CALL initialise(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
-  return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
-    if (const char* wrong = wrong_initial(made, batch)) return refuse(report, wrong);
-    tally found;
-    const char* reason = nullptr;
-    if (made.state_size > 0) {
-      const first_states<Law> states(made, batch);
-      for (std::int64_t first = 0; first < batch.node_count; first += block_nodes) {
-        const std::int64_t left = batch.node_count - first;
-        const node_range nodes(batch, first, left < block_nodes ? left : block_nodes);
-        for (std::int64_t i = 0; i < nodes.count; ++i)
-          if (const char* wrong = states.write(nodes(i))) {
-            if (found.bad_count++ > 0) continue;
-            found.first_bad_node = nodes(i);
-            reason = wrong;
-          }
-      }
+  const batch_call<Law> call(opaque, given, report);
+  if (!call.batch) return call.code;
+  const instance<Law>& made = *call.made;
+  const ilaw_batch& batch = *call.batch;
+  if (const char* wrong = wrong_initial(made, batch)) return refuse(report, wrong);
+  tally found;
+  const char* reason = nullptr;
+  if (made.state_size > 0) {
+    const first_states<Law> states(made, batch);
+    for (std::int64_t first = 0; first < batch.node_count; first += block_nodes) {
+      const std::int64_t left = batch.node_count - first;
+      const node_range nodes(batch, first, left < block_nodes ? left : block_nodes);
+      for (std::int64_t i = 0; i < nodes.count; ++i)
+        if (const char* wrong = states.write(nodes(i))) {
+          if (found.bad_count++ > 0) continue;
+          found.first_bad_node = nodes(i);
+          reason = wrong;
+        }
     }
-    return give_report(report, made, batch, found, reason);
-  });
+  }
+  return give_report(report, made, batch, found, reason);
 }
 
 }  // namespace ilaw::kit::detail

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ilaw/create.h>
 #include <ilaw/kit/detail/describe.hpp>
 #include <ilaw/kit/detail/dispatch.hpp>
 #include <ilaw/kit/detail/float_environment.hpp>
 #include <ilaw/kit/detail/kernel.hpp>
 #include <ilaw/kit/detail/law_on_packs.hpp>
-#include <ilaw/kit/detail/parameters.hpp>
 #include <ilaw/kit/detail/walk.hpp>
+#include <ilaw/sized.hpp>
 
 #include <new>
 
@@ -20,6 +21,20 @@ inline constexpr history_card frame_variables[] = {
     {.name = "frame_normal", .doc = "Normal of the last step.", .internal = true},
     {.name = "frame_tangent", .doc = "First tangent of the last step.", .internal = true}};
 inline constexpr std::int64_t frame_size = 6;
+
+static_assert(table::time == ILAW_TIME && table::computed == ILAW_COMPUTED);
+inline table table_of(const ilaw_table& given) {
+  table t;
+  t.axis_count = static_cast<int>(given.axis_count);
+  for (int a = 0; a < t.axis_count; ++a) {
+    t.source[a] = given.source[a];
+    t.named_axis[a] = static_cast<int>(given.place[a]);
+    t.count[a] = given.count[a];
+    t.points[a] = given.points[a];
+  }
+  t.values = given.values;
+  return t;
+}
 
 // Law: L<double>.
 template <class Law>
@@ -71,174 +86,66 @@ struct instance : instance_base {
   }
 };
 
+// Makes an instance of what create.h read.
 template <class Law>
 class instance_builder {
  public:
-  instance_builder(instance<Law>& target, const ilaw_setup& setup, message& text)
-      : made_(target), setup_(setup), text_(text) {}
+  instance_builder(instance<Law>& target, const ilaw_law& law, const ilaw_setup& setup, ilaw_message& text)
+      : made_(target), abi_(law), setup_(setup), text_(text) {}
 
   ilaw_result build() {
-    for (auto step : {&instance_builder::check_setup, &instance_builder::read_arguments,
-                      &instance_builder::require_arguments, &instance_builder::check_fields,
-                      &instance_builder::check_together, &instance_builder::lay_out_state,
-                      &instance_builder::state_needs})
-      if (const ilaw_result code = (this->*step)(); code != ILAW_OK) return code;
+    ilaw_arguments given{};
+    const ilaw_result read = ilaw_create_read(&abi_, &setup_, &given, &text_);
+    if (read != ILAW_OK) ilaw_arguments_free(&given);
+    if (read != ILAW_OK) return read;
+    take(given);
+    if (const ilaw_result code = check_together(); code != ILAW_OK) return code;
+    lay_out_state();
+    state_needs();
     return ILAW_OK;
   }
 
  private:
   using description_type = typename instance<Law>::description_type;
   static constexpr auto count = static_cast<std::size_t>(parameter_count<Law>);
+  static_assert(parameter_count<Law> <= ILAW_CREATE_MAX);
 
-  ilaw_result check_setup() {
-    const law_card& card = Law::card;
-    const std::uint32_t form = setup_.delassus_form, served = card.delassus_forms;
-    if (setup_.dimension < 1 || setup_.dimension > 3 || !(card.dimensions & (1U << setup_.dimension))) {
-      text_.refuse(ILAW_UNSUPPORTED, "dimension %u is not served: expected", setup_.dimension);
-      for (unsigned d = 1; d <= 3; ++d)
-        if (card.dimensions & (1U << d)) text_.add(" %u", d);
-      return ILAW_UNSUPPORTED;
-    }
-    if (__builtin_popcount(form) != 1 || !(served & form))
-      return text_.refuse(ILAW_UNSUPPORTED, "form %u of H is not served: expected one of%s%s%s%s%s", form,
-                          served & ILAW_DELASSUS_SCALAR ? " 1 (scalar)" : "",
-                          served & ILAW_DELASSUS_DIAGONAL ? " 2 (diagonal)" : "",
-                          served & ILAW_DELASSUS_FULL ? " 4 (full)" : "",
-                          served & ILAW_DELASSUS_TRANSVERSE ? " 8 (transverse)" : "",
-                          served & ILAW_DELASSUS_TRANSVERSE_SPIN ? " 16 (transverse_spin)" : "");
-    if (form == ILAW_DELASSUS_TRANSVERSE_SPIN && setup_.dimension != 3)
-      return text_.refuse(ILAW_UNSUPPORTED,
-                          "dimension %u has no spins: expected 3 for form 16 (transverse_spin) of H",
-                          setup_.dimension);
-    if (setup_.frame != ILAW_FRAME_LOCAL && setup_.frame != ILAW_FRAME_GLOBAL)
-      return text_.refuse(ILAW_UNSUPPORTED, "frame %u is unknown: expected 1 (local) or 2 (global)",
-                          setup_.frame);
-    if (setup_.numbers != ILAW_NUMBERS_DOUBLE && setup_.numbers != ILAW_NUMBERS_FLOAT)
-      return text_.refuse(ILAW_UNSUPPORTED, "numbers %u are unknown: expected 1 (double) or 2 (float)",
-                          setup_.numbers);
-    if (setup_.flags != 0)
-      return text_.refuse(ILAW_UNSUPPORTED, "flags 0x%llx are not known: expected 0",
-                          static_cast<unsigned long long>(setup_.flags));
-    if (setup_.has_tangent > 1)
-      return text_.refuse(ILAW_INVALID_ARGUMENT, "has_tangent %u is unknown: expected 0 or 1",
-                          setup_.has_tangent);
+  void take(const ilaw_arguments& given) {
     made_.dimension = setup_.dimension;
-    made_.delassus_form = form;
+    made_.delassus_form = setup_.delassus_form;
     made_.frame = setup_.frame;
     made_.numbers = setup_.numbers;
     made_.has_tangent = setup_.has_tangent;
-    return ILAW_OK;
-  }
-
-  ilaw_result read_arguments() {
-    for (std::size_t k = 0; k < count; ++k)
-      Law::parameters[k].member.set(made_.law, Law::parameters[k].default_value, made_.tables[k]);
-    if (setup_.argument_count > 0 && !setup_.arguments)
-      return text_.refuse(ILAW_INVALID_ARGUMENT, "arguments is null, expected %u pointers",
-                          setup_.argument_count);
-    for (std::uint32_t k = 0; k < setup_.argument_count; ++k) {
-      const ilaw_argument* given = setup_.arguments[k];
-      const ilaw_argument a = sized::is_complete(given) ? sized::read(given) : ilaw_argument{};
-      if (!a.name)
-        return text_.refuse(ILAW_INVALID_ARGUMENT,
-                            "argument %u is null, has no name or a struct_size not from %u to %u", k,
-                            sized::least<ilaw_argument>, sized::most);
-      if (const ilaw_result code = read_argument(a); code != ILAW_OK) return code;
+    made_.per_node_count = given.per_node_count;
+    for (std::uint32_t k = 0; k < given.per_node_count; ++k) {
+      made_.per_node_parameters[k] = static_cast<int>(given.per_node[k]);
+      made_.per_node_names[k] = given.per_node_names[k];
     }
-    return ILAW_OK;
-  }
-
-  ilaw_result read_argument(const ilaw_argument& a) {
-    constexpr ilaw_result wrong = ILAW_INVALID_PARAMETER;
-    std::size_t i = 0;
-    while (i < count && std::strcmp(Law::parameters[i].name, a.name) != 0) ++i;
-    if (i == count) {
-      text_.refuse(wrong, "unknown parameter '%s': expected one of ", a.name);
-      for (std::size_t k = 0; k < count; ++k) text_.add("%s%s", k ? ", " : "", Law::parameters[k].name);
-      return wrong;
+    for (std::size_t p = 0; p < count; ++p) {
+      table& t = made_.tables[p];
+      t = table_of(given.table[p]);
+      const auto& member = Law::parameters[p].member;
+      member.set(made_.law, given.number[p], t);
+      if (t.axis_count == 0 || member.is_grid()) continue;
+      ++made_.table_count;
+      member.set(made_.law, t.values[0]);
+      for (int a = 0; a < t.axis_count; ++a)
+        for (std::uint32_t k = 0; k < given.per_node_count; ++k)
+          t.per_node = t.per_node || made_.per_node_parameters[k] == t.source[a];
+      if (t.per_node) made_.node_tables = made_.tables;
     }
-    if (given_[i]) return text_.refuse(wrong, "parameter '%s' is given twice", a.name);
-    given_[i] = true;
-    if (Law::parameters[i].needs_spins && !made_.has_spins())
-      return text_.refuse(wrong,
-                          "parameter '%s' needs spins, form %u of H has none: expected 16 (transverse_spin)",
-                          a.name, made_.delassus_form);
-    const ilaw_parameter& p = description_type::parameters[i];
-    if (a.kind == ILAW_KIND_VALUE_TABLE && p.axis_count > 0) return keep_table(p, i, a);
-    if (a.kind == ILAW_KIND_VALUE_PER_NODE && (p.flags & ILAW_FLAG_ALLOWS_PER_NODE)) {
-      made_.per_node_parameters[made_.per_node_count] = static_cast<int>(i);
-      made_.per_node_names[made_.per_node_count++] = p.name;
-      return ILAW_OK;
-    }
-    double value = 0.0;
-    const auto read = p.kind == ILAW_KIND_CHOICE ? read_choice : read_number;
-    const ilaw_result code = read(p, a, value, text_);
-    Law::parameters[i].member.set(made_.law, value, made_.tables[i]);
-    return code;
-  }
-
-  ilaw_result keep_table(const ilaw_parameter& p, std::size_t place, const ilaw_argument& a) {
-    table& made = made_.tables[place];
-    if (const ilaw_result code = read_table(p, a, made, text_); code != ILAW_OK) return code;
-    for (int i = 0; i < made.axis_count; ++i) {
-      const char* axis = p.axes[made.named_axis[i]];
-      made.source[i] = std::strcmp(axis, "time") == 0 ? table::time : table::computed;
-      for (std::size_t k = 0; k < count; ++k)
-        if (std::strcmp(Law::parameters[k].name, axis) == 0) made.source[i] = static_cast<int>(k);
-    }
-    if (Law::parameters[place].member.is_grid()) return ILAW_OK;
-    ++made_.table_count;
-    Law::parameters[place].member.set(made_.law, a.values[0]);
-    return ILAW_OK;
-  }
-  // Fields that are axes must be given, as numbers, per node, or as tables over the time.
-  ilaw_result check_fields() {
-    for (std::size_t k = 0; k < count; ++k)
-      for (int a = 0; a < made_.tables[k].axis_count; ++a) {
-        const int field = made_.tables[k].source[a];
-        if (field < 0) continue;
-        const auto f = static_cast<std::size_t>(field);
-        if (!given_[f] || (made_.tables[f].axis_count > 0 && !made_.tables[f].is_over_time_alone()))
-          return text_.refuse(
-              ILAW_INVALID_PARAMETER,
-              "parameter '%s' is a table over '%s': expected a value, a value per node or a table over "
-              "time for that",
-              Law::parameters[k].name, Law::parameters[f].name);
-        for (std::uint32_t n = 0; n < made_.per_node_count; ++n)
-          if (made_.per_node_parameters[n] == field && !Law::parameters[k].member.is_grid())
-            made_.tables[k].per_node = true;
-        if (made_.tables[k].per_node) made_.node_tables = made_.tables;
-      }
-    return ILAW_OK;
-  }
-
-  ilaw_result require_arguments() {
-    for (std::size_t i = 0; i < count; ++i)
-      if (Law::parameters[i].required && !given_[i]) {
-        const ilaw_parameter& p = description_type::parameters[i];
-        text_.refuse(ILAW_INVALID_PARAMETER, "parameter '%s' is missing: expected ", p.name);
-        if (p.kind == ILAW_KIND_CHOICE) {
-          text_.add("one of ");
-          add_choices(text_, p);
-        } else {
-          text_.add("a number in ");
-          add_range(text_, p);
-        }
-        return ILAW_INVALID_PARAMETER;
-      }
-    return ILAW_OK;
   }
 
   ilaw_result check_together() {
     if constexpr (requires { made_.law.inputs(); })
       if (const std::uint32_t extra = made_.law.inputs() & ~Law::card.inputs)
-        return text_.refuse(ILAW_UNSUPPORTED, "reads inputs 0x%x that its card does not name", extra);
+        return ilaw_refuse(&text_, ILAW_UNSUPPORTED, "reads inputs 0x%x that its card does not name", extra);
     if (const ilaw_result code = check_conflicts(); code != ILAW_OK) return code;
     if constexpr (requires { made_.law.tells_tangents_apart(); })
       if (with_unknowns().tells_tangents_apart() && setup_.frame == ILAW_FRAME_GLOBAL &&
           setup_.dimension == 3 && !setup_.has_tangent)
-        return text_.refuse(
-            ILAW_UNSUPPORTED,
+        return ilaw_refuse(
+            &text_, ILAW_UNSUPPORTED,
             "these parameters tell the two tangential axes apart: expected a tangent per node");
     return ILAW_OK;
   }
@@ -272,11 +179,11 @@ class instance_builder {
   ilaw_result check_conflict(const Law& law, const double* time) {
     if constexpr (requires { law.conflict(); })
       if (const char* conflict = law.conflict()) {
-        text_.refuse(ILAW_INVALID_PARAMETER, "%s", conflict);
+        ilaw_refuse(&text_, ILAW_INVALID_PARAMETER, "%s", conflict);
         add_values_named_in(conflict, law);
         if (time) {
-          text_.add(" at time ");
-          add_number(text_, *time);
+          ilaw_message_add(&text_, " at time ");
+          ilaw_message_add_number(&text_, *time);
         }
         return ILAW_INVALID_PARAMETER;
       }
@@ -290,8 +197,8 @@ class instance_builder {
       char quoted[80];
       std::snprintf(quoted, sizeof quoted, "'%s'", p.name);
       if (!std::strstr(text, quoted)) continue;
-      text_.add("%s%s = ", separator, p.name);
-      add_value(text_, p, Law::parameters[i].member.get(law));
+      ilaw_message_add(&text_, "%s%s = ", separator, p.name);
+      ilaw_message_add_value(&text_, &p, Law::parameters[i].member.get(law));
       separator = ", ";
     }
   }
@@ -306,7 +213,7 @@ class instance_builder {
     return law;
   }
 
-  ilaw_result lay_out_state() {
+  void lay_out_state() {
     if constexpr (has_window<Law>) {
       made_.window = made_.law.window();
       made_.history_size = window::doubles(made_.window);
@@ -322,11 +229,10 @@ class instance_builder {
     made_.state_entries = state_entries<Law>[made_.dimension].data();
     made_.frame_offset = static_cast<std::int64_t>(made_.state_size) - (made_.carries_frame ? frame_size : 0);
     made_.history_offset = made_.frame_offset - made_.history_size;
-    return ILAW_OK;
   }
 
   // Inputs, capabilities and permissions of the instance.
-  ilaw_result state_needs() {
+  void state_needs() {
     std::uint32_t mask = Law::card.inputs;
     if constexpr (requires { made_.law.inputs(); })
       if (!made_.varies()) mask = made_.law.inputs();
@@ -351,7 +257,6 @@ class instance_builder {
     if constexpr (requires { made_.law.asks(true); })
       made_.asks = with_unknowns().asks(made_.is_transverse());
     made_.amount_count = static_cast<std::uint32_t>(amount_count<Law>);
-    return ILAW_OK;
   }
 
   void append(const ilaw_state_variable& v) {
@@ -363,26 +268,27 @@ class instance_builder {
   }
 
   instance<Law>& made_;
+  const ilaw_law& abi_;
   const ilaw_setup setup_;
-  message& text_;
-  bool given_[count + 1] = {};
+  ilaw_message& text_;
 };
 
+// law: its description.
 template <class Law>
-ilaw_result create(const char* name, const ilaw_setup* setup, ilaw_kit_walk walk, ilaw_instance** result,
-                   message& text) {
+ilaw_result create(const ilaw_law& law, const char* name, const ilaw_setup* setup, ilaw_kit_walk walk,
+                   ilaw_instance** result, ilaw_message& text) {
   *result = nullptr;
   if (!name || std::strcmp(name, Law::card.id) != 0)
-    return text.refuse(ILAW_INVALID_ARGUMENT, "create was called for '%s'", name ? name : "null");
+    return ilaw_refuse(&text, ILAW_INVALID_ARGUMENT, "create was called for '%s'", name ? name : "null");
   if (!sized::is_complete(setup))
-    return text.refuse(ILAW_INVALID_ARGUMENT, "setup is null or its struct_size not from %u to %u",
+    return ilaw_refuse(&text, ILAW_INVALID_ARGUMENT, "setup is null or its struct_size not from %u to %u",
                        sized::least<ilaw_setup>, sized::most);
   const float_environment own;
   void* memory = std::malloc(sizeof(instance<Law>));
   if (!memory) return ILAW_OUT_OF_MEMORY;
   auto* made = new (memory) instance<Law>{};
   made->walk = walk;
-  const ilaw_result code = instance_builder<Law>(*made, sized::read(setup), text).build();
+  const ilaw_result code = instance_builder<Law>(*made, law, sized::read(setup), text).build();
   if (code == ILAW_OK) {
     *result = reinterpret_cast<ilaw_instance*>(made);
   } else {

@@ -1,6 +1,6 @@
-// kernel.hpp - the loop over packs of nodes: load, step, check, store. One per law, number type of the host,
-// form of H and frame; layouts, dimensions, outputs and parameters per node are branches that all nodes of a
-// batch share.
+// kernel.hpp - the loop over packs of nodes: load, step, check, store. One per law, form of H and frame, and
+// one for floats; layouts, dimensions, outputs and parameters per node are branches that all nodes of a batch
+// share.
 //
 // A pack with a bad node writes nothing. It is copied to columns of doubles and done again by the careful
 // kernel, which finds the reason and also does the last, unfilled pack: one per law and form of H, whatever
@@ -457,26 +457,23 @@ struct kernel {
     careful_kernel::run_copy(given, copy.pack, i, found, limits);
     copy.give_back(b);
   }
-  // All full packs.
-  ILAW_KIT_INLINE static void run_fast(const Law& given, const view_type& b, std::int64_t& i, tally& found,
-                                       limit& limits) {
-    Wide law = broadcast<V>(given);
-    auto prepared = kit::prepared(law, b.step);
-    const int is_special = b.varying + b.in_memory;
-    for (; i + width <= b.count; i += width) {
-      bool is_usual = true;
-      if (is_special) [[unlikely]]
-        is_usual = get_ready(law, prepared, given, b, i);
-      if (!is_usual || !run_pack(law, prepared, b, i, checks_type(), found, limits, i)) [[unlikely]]
-        run_carefully(given, b, i, found, limits);
-    }
-  }
   [[gnu::noinline, gnu::flatten]] static void run(const void* opaque, const view_type& all, tally& found) {
     const Law& given = *static_cast<const Law*>(opaque);
     const view_type b = all;
     limit limits = steps::start(given, b.varying);
     std::int64_t i = 0;
-    if constexpr (!ILAW_KIT_IS_SPARE) run_fast(given, b, i, found, limits);
+    if constexpr (!ILAW_KIT_IS_SPARE) {
+      Wide law = broadcast<V>(given);
+      auto prepared = kit::prepared(law, b.step);
+      const int is_special = b.varying + b.in_memory;
+      for (; i + width <= b.count; i += width) {
+        bool is_usual = true;
+        if (is_special) [[unlikely]]
+          is_usual = get_ready(law, prepared, given, b, i);
+        if (!is_usual || !run_pack(law, prepared, b, i, checks_type(), found, limits, i)) [[unlikely]]
+          run_carefully(given, b, i, found, limits);
+      }
+    }
     for (; i < b.count; i += width) run_carefully(given, b, i, found, limits);
     if constexpr (width == 1) found.by_scalar_fallback += b.count;
     steps::give(limits, given, found);

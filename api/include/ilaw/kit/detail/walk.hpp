@@ -14,42 +14,18 @@ bool stays(const Array& a, int components) {
   return a.node_stride == 1 || (a.node_stride == components && a.component_stride == 1);
 }
 
-// Host: what the arrays of the batch hold. Number: what the loop reads; another type is converted by blocks.
-template <class Host, class Number = Host, bool HasWindow = false>
-class batch_walk {
- public:
-  using run_function = void (*)(const void* law, const view<Number>&, tally&);
+// What does not depend on the host's numbers: which arrays stay, and the state, whose numbers are doubles.
+class walk_base {
+ protected:
+  // state_scratch: block_nodes for each number of state_in, state_out and twice the frame.
+  walk_base(const instance_base& made, const ilaw_batch& batch, double* state_scratch)
+      : made_(made), b_(batch), d_(static_cast<int>(made.dimension)), state_scratch_(state_scratch) {}
 
-  // state_scratch: block_nodes for each number of state_in, state_out and twice the frame; parameter_scratch:
-  // for each parameter of the law.
-  batch_walk(const instance_base& made, const ilaw_batch& batch, double* state_scratch,
-             Number* parameter_scratch)
-      : made_(made),
-        b_(batch),
-        d_(static_cast<int>(made.dimension)),
-        state_scratch_(state_scratch),
-        parameter_scratch_(parameter_scratch) {}
-
-  [[gnu::noinline]] tally run(run_function loop, const void* law) {
-    tally all;
-    if (made_.window.duration == 0.0 && all_stay()) {
-      run_part(node_range(b_, 0, b_.node_count), loop, law, all);
-    } else {
-      for (std::int64_t first = 0; first < b_.node_count; first += block_nodes) {
-        const std::int64_t left = b_.node_count - first;
-        run_part(node_range(b_, first, left < block_nodes ? left : block_nodes), loop, law, all);
-      }
-    }
-    return all;
-  }
-
- private:
   // ---- which arrays stay
 
-  static constexpr bool converts = !std::is_same_v<Host, Number>;
   template <class Array>
   bool stays_or_absent(const Array& a, int components) const {
-    return !numbers_in<Host>(a) || stays(a, components);
+    return is_absent(made_, a) || stays(a, components);
   }
   bool reads_smooth() const { return (made_.inputs & ILAW_INPUT_V_SMOOTH) != 0; }
   bool smooth_stays() const { return !reads_smooth() || stays_or_absent(b_.v_smooth, d_); }
@@ -67,7 +43,7 @@ class batch_walk {
            a.component_stride == 1;
   }
   bool all_stay() const {
-    bool stay = !converts && !b_.index && !b_.index64 && (!b_.status || b_.status_stride == 1) &&
+    bool stay = !b_.index && !b_.index64 && (!b_.status || b_.status_stride == 1) &&
                 stays_or_absent(b_.v_free, d_) && smooth_stays() && stays_or_absent(b_.v_previous, d_) &&
                 stays_or_absent(b_.normal, d_) && stays_or_absent(b_.tangent, d_) && delassus_stays() &&
                 stays_or_absent(b_.gap, 1) && stays_or_absent(b_.gap_offset, 1) &&
@@ -84,8 +60,6 @@ class batch_walk {
     return stay;
   }
 
-  // ---- copies of a block
-
   // Whether the law's numbers are rows in the host's order.
   template <class Array>
   bool has_rows(const Array& a) const {
@@ -93,6 +67,127 @@ class batch_walk {
     for (int k = 0; k < made_.states; ++k) are_in_order = are_in_order && made_.state_entries[k] == k;
     return are_in_order;
   }
+
+  // ---- state
+
+  struct state_arrays {
+    array<const double> in, frame_in;
+    array<double> out, frame_out;
+  };
+  state_arrays open_state(const node_range& n) const {
+    state_arrays v;
+    if (made_.state_size == 0 && made_.states == 0) return v;
+    copy_unnamed(n);
+    double* const in = state_scratch_;
+    double* const out = in + made_.states * block_nodes;
+    const ilaw_input& from = b_.state_in;
+    v.in = {in, block_nodes, made_.states, 0};
+    if (!n.listed && state_stays(from)) {
+      v.in = {from.values + n.first * from.node_stride, from.component_stride, made_.states,
+              from.node_stride != 1 ? made_.states : 0};
+    } else if (has_rows(from)) {
+      gather_rows(from.values, from.node_stride, made_.states, n, in);
+    } else {
+      for (int k = 0; k < made_.states; ++k) {
+        const int entry = made_.state_entries[k];
+        double* const to = in + k * block_nodes;
+        if (entry >= 0)
+          gather_column(from.values + entry * from.component_stride, from.node_stride, n, to);
+        else
+          for (std::int64_t i = 0; i < n.count; ++i) to[i] = 0.0;
+      }
+    }
+    const ilaw_output& to = b_.state_out;
+    v.out = {out, block_nodes, made_.states, 0};
+    if (!n.listed && state_stays(to))
+      v.out = {to.values + n.first * to.node_stride, to.component_stride, made_.states,
+               to.node_stride != 1 ? made_.states : 0};
+    open_frame(v, n, out + made_.states * block_nodes);
+    return v;
+  }
+  void open_frame(state_arrays& v, const node_range& n, double* copy) const {
+    if (!made_.carries_frame) return;
+    const std::int64_t at = made_.frame_offset;
+    const ilaw_input& in = b_.state_in;
+    const ilaw_output& out = b_.state_out;
+    if (!n.listed && in.node_stride == 1) {
+      v.frame_in = {in.values + at * in.component_stride + n.first, in.component_stride, 6, 0};
+    } else {
+      for (int k = 0; k < 6; ++k)
+        gather_column(in.values + (at + k) * in.component_stride, in.node_stride, n, copy + k * block_nodes);
+      v.frame_in = {copy, block_nodes, 6, 0};
+    }
+    if (!n.listed && out.node_stride == 1)
+      v.frame_out = {out.values + at * out.component_stride + n.first, out.component_stride, 6, 0};
+    else
+      v.frame_out = {copy + 6 * block_nodes, block_nodes, 6, 0};
+  }
+  // A window is worked on in state_out, which therefore starts as state_in.
+  void copy_unnamed(const node_range& n) const {
+    const ilaw_input& in = b_.state_in;
+    const ilaw_output& out = b_.state_out;
+    if (in.values == out.values || made_.history_size == 0) return;
+    for (std::int64_t i = 0; i < n.count; ++i)
+      for (std::int64_t c = made_.history_offset; c < made_.history_offset + made_.history_size; ++c)
+        out.values[n(i) * out.node_stride + c * out.component_stride] =
+            in.values[n(i) * in.node_stride + c * in.component_stride];
+  }
+  void close_state(const array<double>& state_out, const array<double>& frame_out,
+                   const node_range& n) const {
+    if (made_.state_size == 0) return;
+    const ilaw_output& to = b_.state_out;
+    const double* const out = state_scratch_ + made_.states * block_nodes;
+    if (state_out.at == out && has_rows(to))
+      scatter_rows(to.values, to.node_stride, made_.states, n, out);
+    else if (state_out.at == out)
+      for (int k = 0; k < made_.states; ++k)
+        if (const int entry = made_.state_entries[k]; entry >= 0)
+          scatter_column(to.values + entry * to.component_stride, to.node_stride, n, out + k * block_nodes);
+    const double* const frame = out + made_.states * block_nodes + 6 * block_nodes;
+    if (made_.carries_frame && frame_out.at == frame)
+      for (int k = 0; k < 6; k += 3)
+        scatter_three(to.values + (made_.frame_offset + k) * to.component_stride, to.node_stride,
+                      to.component_stride, n, frame + k * block_nodes);
+  }
+
+  const instance_base& made_;
+  const ilaw_batch& b_;
+  const int d_;
+  double* const state_scratch_;
+};
+
+// The loop of a law over a view.
+template <class Number>
+using run_function = void (*)(const void* law, const view<Number>&, tally&);
+
+// Host: what the arrays of the batch hold. Number: what the loop reads; another type is converted by blocks,
+// rows to rows and columns to columns.
+template <class Host, class Number = Host, bool HasWindow = false>
+class batch_walk : walk_base {
+ public:
+  // parameter_scratch: block_nodes for each parameter of the law.
+  batch_walk(const instance_base& made, const ilaw_batch& batch, double* state_scratch,
+             Number* parameter_scratch)
+      : walk_base(made, batch, state_scratch), parameter_scratch_(parameter_scratch) {}
+
+  [[gnu::noinline]] tally run(run_function<Number> loop, const void* law) {
+    tally all;
+    if (!converts && made_.window.duration == 0.0 && all_stay()) {
+      run_part(node_range(b_, 0, b_.node_count), loop, law, all);
+    } else {
+      for (std::int64_t first = 0; first < b_.node_count; first += block_nodes) {
+        const std::int64_t left = b_.node_count - first;
+        run_part(node_range(b_, first, left < block_nodes ? left : block_nodes), loop, law, all);
+      }
+    }
+    return all;
+  }
+
+ private:
+  static constexpr bool converts = !std::is_same_v<Host, Number>;
+
+  // ---- copies of a block
+
   template <class T>
   static void prefetch_block(const T* values, std::int64_t stride, std::int64_t component,
                              const node_range& n) {
@@ -100,19 +195,38 @@ class batch_walk {
     for (std::int64_t k = 0; k < block_nodes * stride; k += 64 / static_cast<int>(sizeof(T)))
       __builtin_prefetch(values + (n.first + block_nodes) * stride + k);
   }
+  // The numbers of rows, or one column after the other, of an array that stays: calls convert with where they
+  // begin in the host's array and in the copy, and how many follow.
+  template <class T, class Array, class Convert>
+  static void convert_all(T* values, const Array& a, int components, const node_range& n, Convert convert) {
+    const bool rows = a.node_stride != 1;
+    const std::int64_t count = rows ? n.count * components : n.count;
+    for (int c = 0; c < (rows ? 1 : components); ++c) {
+      T* const host = values + c * a.component_stride;
+      for (std::int64_t k = 0; k < count; k += 64 / static_cast<int>(sizeof(T)))
+        __builtin_prefetch(host + count + k);
+      convert(host, std::int64_t{c} * block_nodes, count);
+    }
+  }
 
   array<const Number> gather(const ilaw_input& a, int components, const node_range& n, Number* copy) const {
     const Host* const values = numbers_in<Host>(a);
     if (!values) return {};
+    const bool stay = !n.listed && stays(a, components);
+    const int rows = stay && a.node_stride != 1 ? components : 0;
     if constexpr (!converts)
-      if (!n.listed && stays(a, components))
-        return {values + n.first * a.node_stride, a.component_stride, components,
-                a.node_stride != 1 ? components : 0};
+      if (stay) return {values + n.first * a.node_stride, a.component_stride, components, rows};
     gather_components(values, a, components, n, copy);
-    return {copy, block_nodes, components, 0};
+    return {copy, block_nodes, components, rows};
   }
   [[gnu::noinline]] static void gather_components(const Host* values, const ilaw_input& a, int components,
                                                   const node_range& n, Number* copy) {
+    if constexpr (converts)
+      if (!n.listed && stays(a, components))
+        return convert_all(values + n.first * a.node_stride, a, components, n,
+                           [copy](const Host* from, std::int64_t at, std::int64_t count) {
+                             convert(from, copy + at, count);
+                           });
     prefetch_block(values, a.node_stride, a.component_stride, n);
     if (components == 3) return gather_three(values, a.node_stride, a.component_stride, n, copy);
     for (int c = 0; c < components; ++c)
@@ -140,11 +254,11 @@ class batch_walk {
   array<Number> aim(const ilaw_output& a, int components, const node_range& n, Number* copy) const {
     Host* const values = numbers_in<Host>(a);
     if (!values) return {};
+    const bool stay = !n.listed && stays(a, components);
+    const int rows = stay && a.node_stride != 1 ? components : 0;
     if constexpr (!converts)
-      if (!n.listed && stays(a, components))
-        return {values + n.first * a.node_stride, a.component_stride, components,
-                a.node_stride != 1 ? components : 0};
-    return {copy, block_nodes, components, 0};
+      if (stay) return {values + n.first * a.node_stride, a.component_stride, components, rows};
+    return {copy, block_nodes, components, rows};
   }
   void scatter(const ilaw_output& a, const array<Number>& aimed, const node_range& n,
                const Number* copy) const {
@@ -152,90 +266,18 @@ class batch_walk {
   }
   [[gnu::noinline]] static void scatter_components(Host* values, const ilaw_output& a, int components,
                                                    const node_range& n, const Number* copy) {
+    if constexpr (converts)
+      if (!n.listed && stays(a, components))
+        return convert_all(
+            values + n.first * a.node_stride, a, components, n,
+            [copy](Host* to, std::int64_t at, std::int64_t count) { convert(copy + at, to, count); });
     prefetch_block(values, a.node_stride, a.component_stride, n);
     if (components == 3) return scatter_three(values, a.node_stride, a.component_stride, n, copy);
     for (int c = 0; c < components; ++c)
       scatter_column(values + c * a.component_stride, a.node_stride, n, copy + c * block_nodes);
   }
 
-  // ---- state
-
-  void open_state(view<Number>& v, const node_range& n) {
-    if (made_.state_size == 0 && made_.states == 0) return;
-    copy_unnamed(n);
-    double* const in = state_scratch_;
-    double* const out = in + made_.states * block_nodes;
-    const ilaw_input& from = b_.state_in;
-    if (!n.listed && state_stays(from)) {
-      v.state_in = {from.values + n.first * from.node_stride, from.component_stride, made_.states,
-                    from.node_stride != 1 ? made_.states : 0};
-    } else if (has_rows(from)) {
-      gather_rows(from.values, from.node_stride, made_.states, n, in);
-      v.state_in = {in, block_nodes, made_.states, 0};
-    } else {
-      for (int k = 0; k < made_.states; ++k) {
-        const int entry = made_.state_entries[k];
-        double* const to = in + k * block_nodes;
-        if (entry >= 0)
-          gather_column(from.values + entry * from.component_stride, from.node_stride, n, to);
-        else
-          for (std::int64_t i = 0; i < n.count; ++i) to[i] = 0.0;
-      }
-      v.state_in = {in, block_nodes, made_.states, 0};
-    }
-    const ilaw_output& to = b_.state_out;
-    if (!n.listed && state_stays(to))
-      v.state_out = {to.values + n.first * to.node_stride, to.component_stride, made_.states,
-                     to.node_stride != 1 ? made_.states : 0};
-    else
-      v.state_out = {out, block_nodes, made_.states, 0};
-    open_frame(v, n, out + made_.states * block_nodes);
-  }
-  void open_frame(view<Number>& v, const node_range& n, double* copy) {
-    if (!made_.carries_frame) return;
-    const std::int64_t at = made_.frame_offset;
-    const ilaw_input& in = b_.state_in;
-    const ilaw_output& out = b_.state_out;
-    if (!n.listed && in.node_stride == 1) {
-      v.frame_in = {in.values + at * in.component_stride + n.first, in.component_stride, 6, 0};
-    } else {
-      for (int k = 0; k < 6; ++k)
-        gather_column(in.values + (at + k) * in.component_stride, in.node_stride, n, copy + k * block_nodes);
-      v.frame_in = {copy, block_nodes, 6, 0};
-    }
-    if (!n.listed && out.node_stride == 1)
-      v.frame_out = {out.values + at * out.component_stride + n.first, out.component_stride, 6, 0};
-    else
-      v.frame_out = {copy + 6 * block_nodes, block_nodes, 6, 0};
-  }
-  // A window is worked on in state_out, which therefore starts as state_in.
-  void copy_unnamed(const node_range& n) const {
-    const ilaw_input& in = b_.state_in;
-    const ilaw_output& out = b_.state_out;
-    if (in.values == out.values || made_.history_size == 0) return;
-    for (std::int64_t i = 0; i < n.count; ++i)
-      for (std::int64_t c = made_.history_offset; c < made_.history_offset + made_.history_size; ++c)
-        out.values[n(i) * out.node_stride + c * out.component_stride] =
-            in.values[n(i) * in.node_stride + c * in.component_stride];
-  }
-  void close_state(const view<Number>& v, const node_range& n) const {
-    if (made_.state_size == 0) return;
-    const ilaw_output& to = b_.state_out;
-    const double* const out = state_scratch_ + made_.states * block_nodes;
-    if (v.state_out.at == out && has_rows(to))
-      scatter_rows(to.values, to.node_stride, made_.states, n, out);
-    else if (v.state_out.at == out)
-      for (int k = 0; k < made_.states; ++k)
-        if (const int entry = made_.state_entries[k]; entry >= 0)
-          scatter_column(to.values + entry * to.component_stride, to.node_stride, n, out + k * block_nodes);
-    const double* const frame = out + made_.states * block_nodes + 6 * block_nodes;
-    if (made_.carries_frame && v.frame_out.at == frame)
-      for (int k = 0; k < 6; k += 3)
-        scatter_three(to.values + (made_.frame_offset + k) * to.component_stride, to.node_stride,
-                      to.component_stride, n, frame + k * block_nodes);
-  }
-
-  void run_with_windows(view<Number>& v, const node_range& n, run_function loop, const void* law,
+  void run_with_windows(view<Number>& v, const node_range& n, run_function<Number> loop, const void* law,
                         tally& found) {
     const window w(made_.window, {b_.time + 0.5 * b_.position_step, b_.velocity_step});
     const ilaw_output& to = b_.state_out;
@@ -296,13 +338,17 @@ class batch_walk {
     v.has_balance = v.energy.at || v.has_amounts;
   }
   bool status_stays(const node_range& n) const { return !n.listed && b_.status_stride == 1; }
-  void run_part(const node_range& n, run_function loop, const void* law, tally& all) {
+  void run_part(const node_range& n, run_function<Number> loop, const void* law, tally& all) {
     view<Number> v{};
     static_cast<view_options&>(v) = options_of(made_, b_, n.count);
     v.in_memory = std::is_same_v<Host, double> && n.count >= prefetch_from;
     open_inputs(v, n);
     open_outputs(v, n);
-    open_state(v, n);
+    const state_arrays state = open_state(n);
+    v.state_in = state.in;
+    v.state_out = state.out;
+    v.frame_in = state.frame_in;
+    v.frame_out = state.frame_out;
     tally found;
     if constexpr (HasWindow) {
       if (made_.window.duration > 0.0)
@@ -324,7 +370,7 @@ class batch_walk {
       for (std::int64_t i = 0; i < n.count; ++i) b_.status[n(i) * b_.status_stride] = s_.status[i];
     for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k)
       if (v.amounts[k] == s_.amounts[k]) scatter(b_.amounts[k], {v.amounts[k], 0, 1, 0}, n, s_.amounts[k]);
-    close_state(v, n);
+    close_state(v.state_out, v.frame_out, n);
   }
   static void add(tally& all, const tally& found, const node_range& n) {
     all.by_scalar_fallback += found.by_scalar_fallback;
@@ -348,10 +394,6 @@ class batch_walk {
     std::uint8_t status[block_nodes];
   };
 
-  const instance_base& made_;
-  const ilaw_batch& b_;
-  const int d_;
-  double* const state_scratch_;
   Number* const parameter_scratch_;
   scratch s_;
 };

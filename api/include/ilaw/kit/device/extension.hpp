@@ -182,15 +182,16 @@ struct device_functions {
   static ilaw_result ILAW_CALL argument(const ilaw_instance* opaque, const ilaw_batch* given,
                                         const ilaw_device_findings* findings, void* argument,
                                         ilaw_report* report) {
-    return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
-      if (!argument) return refuse(report, "argument is null");
-      if (const char* wrong = not_served(made)) return refuse(report, wrong, ILAW_UNSUPPORTED);
-      if (const char* wrong = wrong_batch(made, batch, false)) return refuse(report, wrong);
-      const ilaw_device_findings none{};
-      device_writer<Law> writer(made, batch, static_cast<std::int32_t>(Place));
-      std::memcpy(argument, &writer.write(findings ? *findings : none), sizeof(device_arguments<Law>));
-      return ilaw_result{ILAW_OK};
-    });
+    const batch_call<Law> call(opaque, given, report);
+    if (!call.batch) return call.code;
+    const instance<Law>& made = *call.made;
+    if (!argument) return refuse(report, "argument is null");
+    if (const char* wrong = not_served(made)) return refuse(report, wrong, ILAW_UNSUPPORTED);
+    if (const char* wrong = wrong_batch(made, *call.batch, false)) return refuse(report, wrong);
+    const ilaw_device_findings none{};
+    device_writer<Law> writer(made, *call.batch, static_cast<std::int32_t>(Place));
+    std::memcpy(argument, &writer.write(findings ? *findings : none), sizeof(device_arguments<Law>));
+    return ILAW_OK;
   }
 
   static ilaw_result ILAW_CALL report(const ilaw_instance* opaque, const ilaw_device_totals* totals,
