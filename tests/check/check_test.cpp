@@ -43,6 +43,8 @@ TEST(Rules, StandOnTheirPage) {
   std::stringstream page;
   page << std::ifstream(ILAW_SOURCE "/docs/check.md").rdbuf();
   const std::string text = page.str();
+  EXPECT_NE(text.find(" the " + std::to_string(rules().size()) + " rules, "), std::string::npos)
+      << "docs/check.md has another number of rules than " << rules().size();
   static const std::regex row("\n\\| (`[^|]*)\\|"), name("`([^`]*)`");
   Names named, families;
   const auto start = text.find("\n## The rules\n");
