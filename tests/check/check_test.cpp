@@ -64,9 +64,11 @@ TEST(Rules, StandOnTheirPage) {
                 std::any_of(families.begin(), families.end(),
                             [&](const std::string& family) { return begins_with(id, family); }))
         << "docs/check.md does not name " << id;
-  for (const std::string& id : named) EXPECT_TRUE(ids.contains(id)) << "docs/check.md: no rule is called " << id;
+  for (const std::string& id : named)
+    EXPECT_TRUE(ids.contains(id)) << "docs/check.md: no rule is called " << id;
   for (const std::string& family : families)
-    EXPECT_TRUE(std::any_of(ids.begin(), ids.end(), [&](const std::string& id) { return begins_with(id, family); }))
+    EXPECT_TRUE(
+        std::any_of(ids.begin(), ids.end(), [&](const std::string& id) { return begins_with(id, family); }))
         << "docs/check.md: no rule begins as " << family;
 }
 
