@@ -45,16 +45,13 @@ measure_order() {
   "$ilaw" converge "$scene" --out "$out" "${@:3}" >/dev/null 2>&1
   cut --delimiter=, --fields=1,2,4- "$out/converge.csv" >"$here/tables/$name.csv"  # bare seconds mean nothing elsewhere
   # Two decimals, without the sign of a zero.
-  local found
-  found=$(value "$out/converge.json" '[.reference, .levels] | @csv' | tr -d '"')
-  awk -v name="$name" -v found="$found" -v orders="$(value "$out/converge.json" \
+  awk -v name="$name" -v found="$(value "$out/converge.json" .reference)" -v orders="$(value "$out/converge.json" \
     '[.orders | .u_L2, .u_max, .v_L1, .instant | if . then (. * 100 | round) / 100 + 0 else . end] | @csv')" -F, '
-    NR == 2 { largest = $1 } { smallest = $1; error = $4 }
-    END { print name "," found "," largest "," smallest "," error "," orders }' "$out/converge.csv" >>"$orders"
+    { error = $4 } END { print name "," found "," error "," orders }' "$out/converge.csv" >>"$orders"
 }
 
 measure_orders() {
-  echo "case,reference,levels,largest h,smallest h,u_L2 at smallest h,order u_L2,order u_max,order v_L1,order instant" >"$orders"
+  echo "case,reference,u_L2 at smallest h,order u_L2,order u_max,order v_L1,order instant" >"$orders"
   for test in postit_test1 postit_test2; do measure_order $test $scenes/$test.json; done
   measure_order postit_test3 plugins/postit/postit_test3.json
   for ball in bouncing_ball_e08 bouncing_ball_e1; do measure_order $ball $here/scenes/$ball.json; done

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """The eight tests of Chung and Ooi (2011), Granular Matter 13: impacts of one or two spheres, in four hosts.
 
-    docs/results/particle_impacts.py [--hosts run,python,lammps,yade] [--tests 1,2,...] [--points]
+    docs/results/particle_impacts.py [--hosts run,python,lammps,yade] [--tests 1,2,...] [--steps] [--points]
     docs/results/particle_impacts.py --picture FILE     the curves of test 4, in Python; needs matplotlib
 
 Runs the laws coulomb, penalty and grain in `ilaw run` (tests 1 to 3, since its points do not rotate), in Python, in
-LAMMPS and in Yade, and the own models of LAMMPS and Yade beside them; prints the tables of particle_impacts.md, with
---points each curve. Needs ILAW_PROGRAM, ILAW_PATH (an absolute folder lib/ilaw), ILAW_LOADER; lmp and yade for theirs.
+LAMMPS and in Yade, and the own models of LAMMPS and Yade beside them; prints the table of particle_impacts.md, with
+--steps errors at 170, 53 and 17 steps instead of 53, with --points each curve. Needs ILAW_PROGRAM, ILAW_PATH (an absolute folder lib/ilaw), ILAW_LOADER; lmp and yade for theirs.
 """
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -274,6 +274,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--hosts", default="run,python,lammps,yade")
     parser.add_argument("--tests", default="1,2,3,4,5,6,7,8")
+    parser.add_argument("--steps", action="store_true", help="print the errors at 170, 53 and 17 steps")
     parser.add_argument("--points", action="store_true", help="print each curve")
     parser.add_argument("--picture", type=Path, metavar="FILE")
     given = parser.parse_args()
@@ -283,11 +284,12 @@ def main() -> None:
     hosts, chosen = given.hosts.split(","), [test for test in tests() if test.name[0] in given.tests.split(",")]
     found = measure(chosen, hosts)
     models = [(law, hosts) for law in LAWS] + [("own", [host]) for host in hosts if host in ("lammps", "yade")]
+    shown = RESOLUTIONS[::-1] if given.steps else (53,)
     names = [f"own model of {of[0]}" if law == "own" else law for law, of in models]
     print("| test | judge | quantity | " + " | ".join(names) + " |\n" + "| --- " * (3 + len(models)) + "|")
     for test in chosen:
         for quantity in test.exact(test, "own"):
-            cells = [errors(test, law, quantity, [[found[id(test), law, host, n] for host in of] for n in (170, 53, 17)])
+            cells = [errors(test, law, quantity, [[found[id(test), law, host, n] for host in of] for n in shown])
                      for law, of in models]  # fmt: skip
             print(f"| {test.name} | {test.judge} | {quantity} | " + " | ".join(cells) + " |")
             if given.points:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the table of docs/benchmarks.md, "The host", from runs of ilaw_bench_host.
+"""Prints what interfaces add to a step of `ilaw run`, from runs of ilaw_bench_host.
 
     ILAW_PATH=$PWD/build/release/lib/ilaw tests/bench/host_table.py build/release/bin/ilaw_bench_host
     ... host_table.py AFTER --before BEFORE      # two builds, run in turn: what became of each time

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -37,12 +38,38 @@ TEST(Rules, HaveAnIdASentenceAndASource) {
   }
 }
 
+// The page names each rule, or its family with '*', in the first column of the table under "The rules".
 TEST(Rules, StandOnTheirPage) {
   std::stringstream page;
   page << std::ifstream(ILAW_SOURCE "/docs/check.md").rdbuf();
-  EXPECT_NE(page.str().find(table_of_rules()), std::string::npos)
-      << "docs/check.md does not show the table of `ilaw check --rules`:\n"
-      << table_of_rules();
+  const std::string text = page.str();
+  EXPECT_NE(text.find(" the " + std::to_string(rules().size()) + " rules, "), std::string::npos)
+      << "docs/check.md has another number of rules than " << rules().size();
+  static const std::regex row("\n\\| (`[^|]*)\\|"), name("`([^`]*)`");
+  Names named, families;
+  const auto start = text.find("\n## The rules\n");
+  ASSERT_NE(start, std::string::npos);
+  const std::string table = text.substr(start);
+  for (std::sregex_iterator at(table.begin(), table.end(), row), end; at != end; ++at) {
+    const std::string cell = (*at)[1];
+    for (std::sregex_iterator found(cell.begin(), cell.end(), name); found != end; ++found)
+      ((*found)[1].str().back() == '*' ? families : named).insert((*found)[1]);
+  }
+  const auto begins_with = [](const std::string& id, const std::string& family) {
+    return id.rfind(family.substr(0, family.size() - 1), 0) == 0;
+  };
+  const Names ids = with_id_of_rules();
+  for (const std::string& id : ids)
+    EXPECT_TRUE(named.contains(id) ||
+                std::any_of(families.begin(), families.end(),
+                            [&](const std::string& family) { return begins_with(id, family); }))
+        << "docs/check.md does not name " << id;
+  for (const std::string& id : named)
+    EXPECT_TRUE(ids.contains(id)) << "docs/check.md: no rule is called " << id;
+  for (const std::string& family : families)
+    EXPECT_TRUE(
+        std::any_of(ids.begin(), ids.end(), [&](const std::string& id) { return begins_with(id, family); }))
+        << "docs/check.md: no rule begins as " << family;
 }
 
 TEST(Rules, MakeATableOfThreeColumns) {

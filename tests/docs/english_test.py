@@ -24,7 +24,7 @@ CONDITION_AS_PLACE = re.compile(r"Where\b")
 # Pages that are rewritten with the code they describe; a page leaves this list when it has no offence.
 PENDING = set()
 # Pages of laws have these sections in this order.
-LAW_SECTIONS = ["Equations", "Parameters", "State", "Energy", "Step", "Limits", "Cost", "Example", "Sources"]
+LAW_SECTIONS = ["Equations", "Parameters", "State", "Energy", "Step", "Limits", "Example", "Sources"]
 # Logbooks keep the words of the day on which they were written.
 LOGBOOKS = ROOT / "docs" / "log"
 
