@@ -7,12 +7,13 @@
     tests/coverage.py --add                    nothing anew: what was run before
     tests/coverage.py --files 20               also each folder, and the files where most was missed: lines, then branches
     tests/coverage.py --table                  and writes the figures into docs/reliability.md
+    tests/coverage.py --least 95 90            fails where an area has less of its lines (95 %) or branches (90 %)
 
 A branch is one outcome of a condition that stands in the source: of an if, a loop, ?:, a case, each operand of && and
 ||. What a compiler adds, as the edges of exceptions, is none, and neither is a condition that is known when compiled.
 What is compiled several times, as templates are, counts as reached where it is in one of them; constexpr functions
 that ran in the compiler alone are left out. Counts are kept in files that all processes map, so that those of
-children that crash are there too. Exit code: 0.
+children that crash are there too. Exit code: 0, or 1 where --least is missed.
 """
 import argparse
 import collections
@@ -43,6 +44,8 @@ def arguments():
     parser.add_argument("--add", action="store_true", help="keep the counts of what was run before")
     parser.add_argument("--files", type=int, default=0, help="how many files to list")
     parser.add_argument("--table", action="store_true", help="write the figures into docs/reliability.md")
+    parser.add_argument("--least", nargs=2, type=float, metavar=("LINES", "BRANCHES"), default=(0.0, 0.0),
+                        help="percent of each area that must be reached")
     parser.add_argument("--jobs", default=os.cpu_count(), type=int, help="processes of the build and of the tests")
     return parser.parse_args()
 
@@ -191,7 +194,9 @@ def main():
         print_files(lines, branches, options.files)
     if options.table:
         marked_part.write(PAGE, "<!-- coverage -->", "<!-- end of the coverage -->", table(lines, branches))
+    reached = [(share(of, area), least) for area in AREAS for of, least in zip((lines, branches), options.least)]
+    return 0 if all(100.0 * hit >= least * count for (hit, count), least in reached) else 1
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -6,7 +6,7 @@
 namespace random_batches {
 namespace {
 
-constexpr int most_nodes = 8;
+constexpr int few_nodes = 8, many_nodes = 150;  // more than a block of the kit
 
 // An array of room nodes with strides of any sort; only the elements of the nodes in use may be touched.
 template <class Number>
@@ -97,7 +97,7 @@ std::optional<Drawn> Drawn::of(const ilaw::library& library, Draw& draw) {
   Drawn drawn;
   drawn.setup_.struct_size = sizeof drawn.setup_;
   drawn.setup_.dimension = 1 + static_cast<std::uint32_t>(draw.below(3));
-  drawn.setup_.delassus_form = 1U << draw.below(4);
+  drawn.setup_.delassus_form = 1U << draw.below(5);
   drawn.setup_.frame = draw.one_in(2) ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL;
   drawn.setup_.numbers = draw.one_in(3) ? ILAW_NUMBERS_FLOAT : ILAW_NUMBERS_DOUBLE;
   drawn.setup_.has_tangent = drawn.setup_.frame == ILAW_FRAME_GLOBAL && draw.one_in(2);
@@ -110,11 +110,14 @@ std::optional<Drawn> Drawn::of(const ilaw::library& library, Draw& draw) {
   for (const ilaw_argument& a : arguments) pointers.push_back(&a);
   drawn.setup_.arguments = pointers.data();
   drawn.setup_.argument_count = static_cast<std::uint32_t>(pointers.size());
+  if (before) before();
   try {
     drawn.interface_.emplace(library, law.id, drawn.setup_);
   } catch (const ilaw::error&) {
-    return std::nullopt;
+    drawn.interface_.reset();
   }
+  if (after) after();
+  if (!drawn.interface_) return std::nullopt;
   drawn.info_ = drawn.interface_->info();
   drawn.setup_.arguments = nullptr;
   return drawn;
@@ -124,11 +127,12 @@ std::size_t Runner::form_width() const {
   const std::size_t d = drawn_.dimension();
   if (drawn_.form() == ILAW_DELASSUS_SCALAR) return 1;
   if (drawn_.form() == ILAW_DELASSUS_DIAGONAL) return d;
+  if (drawn_.spins()) return 5;
   return drawn_.form() == ILAW_DELASSUS_FULL ? d * (d + 1) / 2 : 2;
 }
 
 void Runner::draw_nodes() {
-  const auto count = static_cast<std::int64_t>(1 + draw_.below(most_nodes));
+  const auto count = static_cast<std::int64_t>(1 + draw_.below(draw_.one_in(20) ? many_nodes : few_nodes));
   const std::uint64_t list = draw_.below(3);  // none, 32 or 64 bits
   room_ = list == 0 ? count : count + static_cast<std::int64_t>(draw_.below(4));
   std::vector<std::int64_t> all;
@@ -176,6 +180,13 @@ void Runner::draw_arrays() {
   gap_ = in(1);
   if (draw_.one_in(3)) offset_ = in(1);
   previous_ = in(d);
+  if (draw_.one_in(2)) smooth_ = in(d);
+  if (drawn_.spins()) {
+    spin_free_ = in(d);
+    spin_previous_ = in(d);
+    moment_ = out(d);
+    if (draw_.one_in(2)) spin_ = out(d);
+  }
   area_ = in(1);
   if (drawn_.global()) normal_ = in(d);
   if (drawn_.tangent()) tangent_ = in(d);
@@ -197,6 +208,9 @@ void Runner::describe() {
   batch_.gap = gap_.input();
   batch_.gap_offset = offset_.input();
   batch_.v_previous = previous_.input();
+  batch_.v_smooth = smooth_.input();
+  batch_.spin_free = spin_free_.input();
+  batch_.spin_previous = spin_previous_.input();
   batch_.area = area_.input();
   batch_.normal = normal_.input();
   batch_.tangent = tangent_.input();
@@ -206,12 +220,15 @@ void Runner::describe() {
   batch_.state_in = state_in_.input();
   batch_.state_out = state_out_.output();
   batch_.impulse = impulse_.output();
+  batch_.moment = moment_.output();
   batch_.velocity = velocity_.output();
+  batch_.spin = spin_.output();
   batch_.energy = energy_.output();
   batch_.amounts = amount_outputs_.empty() ? nullptr : amount_outputs_.data();
   if (draw_.one_in(2)) {
-    batch_.status = status_.data();
     batch_.status_stride = 1 + static_cast<std::int64_t>(draw_.below(3));
+    status_.resize(static_cast<std::size_t>(room_ * batch_.status_stride));
+    batch_.status = status_.data();
   }
   batch_.velocity_step = batch_.position_step = 1e-3;
   for (const std::int64_t node : nodes_)
@@ -245,9 +262,10 @@ void Runner::fill_frames() {
 void Runner::fill_delassus() {
   const std::size_t d = drawn_.dimension(), width = form_width();
   const double scale = draw_.one_in(4) ? 1e6 : 1.0;
-  const std::size_t diagonal = drawn_.form() == ILAW_DELASSUS_FULL ? d : width;
+  const std::size_t diagonal = drawn_.spins() ? 2 : drawn_.form() == ILAW_DELASSUS_FULL ? d : width;
   fill(delassus_, 0, diagonal, 0.5 * scale, 2.0 * scale);
-  fill(delassus_, diagonal, width, -0.24 * scale, 0.24 * scale);
+  fill(delassus_, diagonal, drawn_.spins() ? 3 : width, -0.24 * scale, 0.24 * scale);
+  if (drawn_.spins()) fill(delassus_, 3, width, 0.5 * scale, 2.0 * scale);
 }
 
 void Runner::fill_step(int n) {
@@ -261,6 +279,8 @@ void Runner::fill_step(int n) {
   const double speed = draw_.one_in(3) ? 100.0 : 1.0;
   fill(v_free_, 0, d, -speed, speed);
   fill(previous_, 0, d, -speed, speed);
+  for (const Array& given : {smooth_, spin_free_, spin_previous_})
+    if (given.is_given()) fill(given, 0, d, -speed, speed);
   const double depth = draw_.one_in(2) ? 1e-3 : 0.2;
   fill(gap_, 0, 1, -depth, depth);
   if (offset_.is_given()) fill(offset_, 0, 1, 0.0, 1e-3);
@@ -296,7 +316,10 @@ void Runner::call(bool evaluates, Tally& tally) {
   if (code < 0) return;
   for (const std::int64_t node : nodes_) {
     for (std::size_t c = 0; c < drawn_.info().state_size; ++c) tally.add(state_out_.bits(node, c));
-    for (std::size_t c = 0; evaluates && c < drawn_.dimension(); ++c) tally.add(impulse_.bits(node, c));
+    for (std::size_t c = 0; evaluates && c < drawn_.dimension(); ++c) {
+      tally.add(impulse_.bits(node, c));
+      if (drawn_.spins()) tally.add(moment_.bits(node, c));
+    }
   }
 }
 
@@ -329,8 +352,10 @@ void Runner::check(std::int32_t code, const ilaw_report& report, bool evaluated,
 std::string Runner::wrong_at(std::int64_t node, bool is_bad) const {
   bool zero = true;
   for (std::size_t c = 0; c < drawn_.dimension(); ++c) {
-    if (!impulse_.is_finite(node, c)) return "an impulse of " + std::to_string(impulse_.get(node, c));
-    zero = zero && impulse_.get(node, c) == 0.0;
+    for (const Array& given : {impulse_, drawn_.spins() ? moment_ : impulse_}) {
+      if (!given.is_finite(node, c)) return "an impulse or moment of " + std::to_string(given.get(node, c));
+      zero = zero && given.get(node, c) == 0.0;
+    }
   }
   if (is_bad && !zero) return "bad input and an impulse";
   if (batch_.status && status_[static_cast<std::size_t>(node * batch_.status_stride)] >= ILAW_STATUS_COUNT)

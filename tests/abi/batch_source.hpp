@@ -176,10 +176,14 @@ class Drawn {
  public:
   // Nothing where the law refuses the draw, as it may.
   static std::optional<Drawn> of(const ilaw::library& library, Draw& draw);
+  // Before and after the law is created.
+  static inline void (*before)() = nullptr;
+  static inline void (*after)() = nullptr;
 
   const ilaw::interface& interface() const { return *interface_; }
   const ilaw_instance_info& info() const { return info_; }
   std::size_t dimension() const { return setup_.dimension; }
+  bool spins() const { return setup_.delassus_form == ILAW_DELASSUS_TRANSVERSE_SPIN; }
   bool global() const { return setup_.frame == ILAW_FRAME_GLOBAL; }
   bool tangent() const { return setup_.has_tangent != 0; }
   std::uint32_t form() const { return setup_.delassus_form; }
@@ -245,12 +249,12 @@ class Runner {
   std::int64_t room_ = 0;
   std::vector<std::int32_t> index_;
   std::vector<std::int64_t> index64_;
-  Array v_free_, delassus_, gap_, offset_, previous_, area_, normal_, tangent_, state_in_, state_out_,
-      impulse_, velocity_, energy_;
+  Array v_free_, delassus_, gap_, offset_, previous_, smooth_, spin_free_, spin_previous_, area_, normal_,
+      tangent_, state_in_, state_out_, impulse_, moment_, velocity_, spin_, energy_;
   std::vector<Array> per_node_, amounts_;
   std::vector<ilaw_input> per_node_inputs_;
   std::vector<ilaw_output> amount_outputs_;
-  std::array<std::uint8_t, 64> status_{};
+  std::vector<std::uint8_t> status_;
   ilaw_batch batch_{};
   bool in_place_ = false;
 };

@@ -118,18 +118,6 @@ ilaw::interface friction(bool rotate, double mu) {
   return create("coulomb", rotate ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR, {{"friction", mu}});
 }
 
-// Four legs: the weight on each is not unique, their sum is.
-TEST(CoupledConvergence, HoldsATableOnFourLegs) {
-  Assembly table(friction(true, 0.5), true);
-  table.add_body(2.0, 1.0, {0.0, 0.0, -1e-2});
-  for (const double x : {-1.0, 1.0})
-    for (const double y : {-1.0, 1.0}) table.add(0, -1, {x, y, -0.5});
-  const ilaw_coupled_report report = table.solve(1e-12, 1000);
-  EXPECT_LE(report.residual, 1e-12);
-  EXPECT_LE(table.largest_velocity(), 1e-12);
-  EXPECT_NEAR(table.impulse[2] + table.impulse[5] + table.impulse[8] + table.impulse[11], 2e-2, 1e-12);
-}
-
 // 400 balls, too many for 200 iterations: the report counts them and says so in a sentence.
 TEST(CoupledConvergence, NamesWhatIsNotSolved) {
   Assembly column(friction(false, 0.3), false);

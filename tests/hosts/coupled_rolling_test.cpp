@@ -102,21 +102,6 @@ TEST(CoupledRolling, FirstIterationHasTheBitsOfEvaluate) {
   }
 }
 
-// A plate that spins about the normal takes the ball with it: I dw/dt = tau M g up to the spin of the plate.
-TEST(CoupledRolling, PlateThatSpinsTurnsTheBall) {
-  constexpr double tau = 0.001, plate = 20.0, rate = tau * mass * gravity / inertia;
-  for (const double h : steps) {
-    Grains one = ball(resistance(0.5, 0.002, tau), h);
-    one.walls_spin = true;
-    one.walls[0].spin = one.walls[0].spin_previous = {0.0, 0.0, plate};
-    for (int k = 0; (k - 10) * h * rate < plate; ++k) {
-      one.step();
-      ASSERT_NEAR(one.grains[0].w[2], std::min(plate, (k + 1) * h * rate), 1e-11) << "h " << h;
-    }
-    EXPECT_EQ(one.grains[0].w[0], 0.0);
-  }
-}
-
 // A roller below the ball that spins ever faster, by alpha t about y: the rolling moment rho M g drives the
 // ball with 7/5 a = rho g/R. The roller gives rho M g times its angle, of which the ball keeps its kinetic
 // energy.

@@ -22,21 +22,6 @@ namespace {
 using namespace coupled_scene;
 using ilaw::testing::Random;
 
-TEST(Coupled, StackAtRestStaysAtRest) {
-  Scene scene(friction(0.3), 100);
-  for (int i = 0; i < 100; ++i) scene.add(i, i - 1, 0.0, {0, 0, 1});
-  scene.initialise();
-  for (int n = 0; n < 20; ++n) {
-    const ilaw_coupled_report report = scene.step(g, 1e-16);
-    ASSERT_LE(scene.largest_velocity(), 1e-11 * g * h)
-        << "step " << n << ", sweeps " << report.sweeps << ", residual " << report.residual;
-    for (std::size_t i = 0; i < 100; ++i)
-      ASSERT_NEAR(scene.impulse[3 * i + 2], (100.0 - static_cast<double>(i)) * g * h / scene.inverse_mass,
-                  1e-11)
-          << "step " << n << ": the weight above contact " << i;
-  }
-}
-
 TEST(Coupled, TiedGrainsBecomeOneBody) {
   Scene scene = cube(tie(), 3);
   const double before = scene.kinetic();
@@ -56,20 +41,6 @@ TEST(Coupled, TiedGrainsBecomeOneBody) {
   }
   EXPECT_LE(scene.largest_slip(), 1e-11);
   EXPECT_GT(kinetic, 0.01 * before) << "what they have as one mechanism stays";
-}
-
-TEST(Coupled, WorkIsTheChangeOfKineticEnergy) {
-  for (const std::uint32_t sweeps : {1U, 4U, 2000U}) {
-    Scene scene = cube(friction(0.4), 5);
-    const double before = scene.kinetic();
-    const ilaw_coupled_report report = scene.step(0.0, 1e-13, sweeps);
-    EXPECT_NEAR(report.work, scene.kinetic() - before, 1e-13 * before) << sweeps;
-    const double parts = report.energy[ILAW_ENERGY_FRICTION] + report.energy[ILAW_ENERGY_IMPACT];
-    if (sweeps > 100) {
-      EXPECT_EQ(report.message, nullptr) << report.message;
-      EXPECT_NEAR(-report.work, parts, 1e-11 * before) << "sweeps " << sweeps;
-    }
-  }
 }
 
 std::vector<double> velocities_after(Scene& scene, double tolerance, std::uint32_t most_sweeps = 5000) {

@@ -83,17 +83,6 @@ INSTANTIATE_TEST_SUITE_P(Sections, FortranArray,
                                          section{6, 5, 3, 25, 0, 10},    // (2:4,5) for all
                                          section{7, 1, 3, 47, 0, 10}));  // (4:6,7:7)
 
-// A vector of all degrees of freedom is one number per node for the module, and no velocity for a law.
-TEST(FortranModule, FlatVectorIsRefusedByTheLaw) {
-  const ilaw::interface law = make_law("coulomb", SetupBuilder({{{"friction", 0.5}}, {}}));
-  SmallBatch nodes(2, {-1.0, 0.0, 0.0});
-  ASSERT_EQ(law.evaluate(nodes.b), ILAW_OK);
-  nodes.b.v_free = fortran_input(4, 8);
-  EXPECT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_INVALID_ARGUMENT);
-  EXPECT_STREQ(nodes.report.reason,
-               "v_free has one component per node (component stride 0), expected a (d,n) array");
-}
-
 TEST(FortranModule, EmptyArrayIsAbsent) {
   for (const int bytes : {8, 4}) {
     const ilaw_input input = fortran_input(8, bytes);

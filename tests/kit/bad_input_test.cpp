@@ -1,7 +1,7 @@
 // What is bad input, and what is ordinary. That nothing happens at a bad node, and everything at the others,
 // is for `ilaw check` (bad-input-*).
-#include "batch_runner.hpp"
 #include "kit_probe.hpp"
+#include "mixed_nodes.hpp"
 
 #include "support/law_cases.hpp"
 #include "support/small_batch.hpp"
@@ -11,20 +11,16 @@ namespace {
 
 // Tiny and huge but representable inputs are ordinary.
 TEST(Extremes, AreSolvedWhereTheResultCanBeRepresented) {
-  const SetupBuilder setup({{{"friction", 0.5}}, {}});
-  const ilaw::interface law = make_law("coulomb", setup);
+  NodeRun node("coulomb", {{{"friction", 0.5}}, {}});
   for (const double scale : {5e-324, 1e-310, 1e-300, 1e-200, 1e200, 1e300})
     for (const double h : {1e-5, 1.0, 1e5}) {
-      Nodes nodes(1);
-      nodes.v_free = {-scale, scale, 0.0};
-      nodes.delassus = {h};
-      nodes.gap = {0.0};
-      const Results results = run(law, nodes, {}, false, 1);
-      EXPECT_EQ(results.code, ILAW_OK) << scale << " " << h;
-      EXPECT_EQ(results.impulse[0], scale / h) << "h " << h;
+      node.h[0] = h;
+      node.v_previous = {};
+      EXPECT_EQ(node.step({-scale, scale, 0.0}), ILAW_OK) << scale << " " << h;
+      EXPECT_EQ(node.r[0], scale / h) << "h " << h;
       // A few ulp, where subnormal velocities have ulps of 5e-324.
       const double relative = 1e-15 + 5e-324 / scale;
-      EXPECT_LE(std::abs(results.impulse[1] + 0.5 * (scale / h)), relative * (scale / h)) << "h " << h;
+      EXPECT_LE(std::abs(node.r[1] + 0.5 * (scale / h)), relative * (scale / h)) << "h " << h;
     }
 }
 
@@ -34,21 +30,14 @@ TEST(EnergyOutput, DoesNotChangeTheMotionWhereThePreviousVelocityIsNone) {
   std::vector<LawCase> served = law_cases("bad_input");
   served.push_back({"kit_probe", "kit_probe", probe_parameters, {}});
   for (const auto& [name, ignored, parameters, more] : served) {
-    const ilaw::interface law = make_tested_law(name, SetupBuilder(parameters));
-    if (law.info().inputs & ILAW_INPUT_V_PREVIOUS) continue;
-    Nodes nodes(270);
-    for (std::size_t k = 0; k < nodes.v_previous.size(); k += 5) nodes.v_previous[k] = nan_value;
-    nodes.v_previous[6] = inf_value;
-    const Results with = run(law, nodes, {}, false), without = run(law, nodes, {.outputs = false}, false);
-    EXPECT_EQ(with.code, ILAW_OK) << name << ": " << (with.report.reason ? with.report.reason : "");
-    EXPECT_EQ(with.impulse, without.impulse) << name;
-    EXPECT_EQ(with.state, without.state) << name;
-    for (std::size_t i = 0; i < 270; ++i) {
-      if (!std::isfinite(nodes.v_previous[3 * i] + nodes.v_previous[3 * i + 1] +
-                         nodes.v_previous[3 * i + 2])) {
-        EXPECT_EQ(with.energy[4 * i] + with.energy[4 * i + 1] + with.energy[4 * i + 2], 0.0) << name << i;
-      }
-    }
+    MixedNodes nodes(make_tested_law(name, SetupBuilder(parameters)), 270);
+    if (nodes.law->info().inputs & ILAW_INPUT_V_PREVIOUS) continue;
+    for (std::size_t i = 0; i < 270; i += 2) nodes.v_previous[i][i % 3] = i % 4 ? nan_value : inf_value;
+    const MixedNodes with = nodes.stepped(), without = nodes.stepped({.outputs = false});
+    EXPECT_EQ(with.report.bad_count, 0) << name << ": " << (with.report.reason ? with.report.reason : "");
+    EXPECT_TRUE(same_bits(with.r, without.r) && same_bits(with.state, without.state)) << name;
+    for (std::size_t i = 0; i < 270; i += 2)
+      EXPECT_EQ(with.energy[i][0] + with.energy[i][1] + with.energy[i][2], 0.0) << name << i;
   }
 }
 

@@ -10,51 +10,6 @@
 namespace ilaw::testing {
 namespace {
 
-TEST(Create, NamesTheParameterItsValueAndWhatIsAllowed) {
-  EXPECT_EQ(refusal_of("contact", {{{"restitution", 1.5}}, {}}),
-            "law 'contact': parameter 'restitution' = 1.5 is not allowed: expected a number in [0, 1]");
-  EXPECT_EQ(refusal_of("contact", {{{"restitution", std::nan("")}}, {}}),
-            "law 'contact': parameter 'restitution' = nan is not allowed: expected a number in [0, 1]");
-  EXPECT_EQ(refusal_of("contact", {{{"restitution", inf_value}}, {}}),
-            "law 'contact': parameter 'restitution' = inf is not allowed: expected a number in [0, 1]");
-  EXPECT_EQ(refusal_of("contact", {{{"restituton", 0.5}}, {}}),
-            "law 'contact': unknown parameter 'restituton': expected one of restitution, activation");
-  EXPECT_EQ(refusal_of("contact", {{}, {{"activation", "early"}}}),
-            "law 'contact': parameter 'activation' = \"early\" is not allowed: expected one of \"moreau\", "
-            "\"predictive\"");
-  EXPECT_EQ(
-      refusal_of("contact", {{}, {{"restitution", "high"}}}),
-      "law 'contact': parameter 'restitution' was given as a text (\"high\"): expected a number in [0, 1]");
-  EXPECT_EQ(refusal_of("coulomb", {}),
-            "law 'coulomb': parameter 'friction' is missing: expected a number in [0, inf]");
-  EXPECT_EQ(refusal_of("coulomb", {{{"friction", -0.1}}, {}}),
-            "law 'coulomb': parameter 'friction' = -0.1 is not allowed: expected a number in "
-            "[0, inf]");
-  EXPECT_EQ(refusal_of("postit", {{{"buckets", 2.5}}, {}}),
-            "law 'postit': parameter 'buckets' = 2.5 is not allowed: expected a whole number in [1, 4096]");
-  EXPECT_EQ(refusal_of("postit", {{{"tangent_influence", 0.0}}, {}}),
-            "law 'postit': parameter 'tangent_influence' = 0 is not allowed: expected a number in (0, inf]");
-  EXPECT_EQ(
-      refusal_of("postit", {{{"initial_adhesion", 2.0}, {"adhesion_limit", 1.0}}, {}}),
-      "law 'postit': parameter 'initial_adhesion' is larger than 'adhesion_limit', expected at most that; "
-      "found adhesion_limit = 1, initial_adhesion = 2");
-}
-
-TEST(Create, RefusesSetupsThatTheLawDoesNotServe) {
-  SetupBuilder setup({});
-  const auto refusal = [&] { return refusal_of("contact", setup, ILAW_UNSUPPORTED); };
-  setup.setup.dimension = 4;
-  EXPECT_EQ(refusal(), "law 'contact': dimension 4 is not served: expected 1 2 3");
-  setup.setup.dimension = 3;
-  setup.setup.delassus_form = 16;
-  EXPECT_EQ(refusal(),
-            "law 'contact': form 16 of H is not served: expected one of 1 (scalar) 2 (diagonal) 4 (full) "
-            "8 (transverse)");
-  setup.setup.delassus_form = ILAW_DELASSUS_SCALAR;
-  setup.setup.flags = std::uint64_t{1} << 40;
-  EXPECT_EQ(refusal(), "law 'contact': flags 0x10000000000 are not known: expected 0");
-}
-
 TEST(Create, RefusesUnknownInstructionSets) {
   const SetupBuilder setup({});
   for (const char* level : {"", "V3", "avx2", "v5", "v3 "}) {
@@ -76,27 +31,6 @@ Parameters tables_of(std::map<std::string, std::vector<double>> tables) {
 struct TwoSliding : SmallBatch {
   TwoSliding() : SmallBatch(2, {-1.0, 5.0, 0.0}) {}
 };
-
-// Two values at one time are none.
-TEST(Create, RefusesTablesWhoseTimesDoNotIncrease) {
-  for (const double second : {1.0, 0.5, inf_value, nan_value}) {
-    const std::string said =
-        refusal_of("coulomb", tables_of({{"friction", {1.0, 0.1, second, 0.2, 3.0, 0.3}}}));
-    EXPECT_THAT(said, HasSubstr(": expected finite, increasing points")) << second;
-  }
-}
-
-// A table in time is read at the time of the batch.
-TEST(Create, TakesTables) {
-  const Parameters table = tables_of({{"friction", {0.0, 0.0, 1.0, 0.8}}});
-  const ilaw::interface law = make_law("coulomb", SetupBuilder(table));
-  TwoSliding nodes;
-  for (const auto& [time, friction] : {std::pair{-1.0, 0.0}, {0.25, 0.2}, {0.5, 0.4}, {7.0, 0.8}}) {
-    nodes.b.time = time;
-    EXPECT_EQ(law.evaluate(nodes.b), ILAW_OK);
-    EXPECT_NEAR(nodes.r[0][1], -friction, 1e-15);
-  }
-}
 
 // A table's end beside an infinite value is what was written.
 TEST(Create, TakesTablesThatReachInfinity) {
@@ -142,28 +76,6 @@ TEST(Create, RefusesAMemoryThatVaries) {
       EXPECT_EQ(refusal_of(law, varying), "law '" + law + "': parameter 'memory' was given as " + words +
                                               ": expected a number in [0, inf]")
           << "law " << law;
-}
-
-// A value per node comes with the batch and is checked there.
-TEST(Create, TakesValuesPerNode) {
-  Parameters per_node;
-  per_node.per_node = {"friction"};
-  const ilaw::interface law = make_law("coulomb", SetupBuilder(per_node));
-  ASSERT_EQ(law.info().per_node_parameter_count, 1U);
-  EXPECT_STREQ(law.info().per_node_parameters[0], "friction");
-  double friction[] = {0.1, 0.3};
-  const ilaw_input given = ilaw::input(friction, 1, 1);
-  TwoSliding nodes;
-  nodes.b.per_node_parameters = &given;
-  EXPECT_EQ(law.evaluate(nodes.b), ILAW_OK);
-  EXPECT_NEAR(nodes.r[0][1], -0.1, 1e-16);
-  EXPECT_NEAR(nodes.r[1][1], -0.3, 1e-16);
-  friction[1] = -0.3;
-  EXPECT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_BAD_NODES);
-  EXPECT_EQ(nodes.report.first_bad_node, 1);
-  EXPECT_STREQ(nodes.report.reason, "a per-node parameter is out of range");
-  EXPECT_NEAR(nodes.r[0][1], -0.1, 1e-16);
-  EXPECT_EQ(nodes.r[1][1], 0.0);
 }
 
 // Authors give their laws extensions by a member, beside those of the kit.

@@ -124,50 +124,6 @@ TEST(Tables, AreBilinearOverTimeAndAField) {
   EXPECT_THAT(at(9.0, 999.0), IsNear(11.0));  // constant beyond its ends
 }
 
-TEST(Tables, HaveThreeAxes) {
-  const Axis hard{"hardness", {1.0, 2.0}}, two{"temperature", {300.0, 400.0}};
-  const std::vector<double> sums = {1, 2, 3, 4, 5, 6, 7, 8};
-  const ilaw::interface law = Probe("pack_probe")
-                                  .table("viscosity", {hard, seconds, two}, sums)
-                                  .number("temperature", 300.0)
-                                  .per_node("hardness")
-                                  .make();
-  EXPECT_THAT(ViscosityOf(law).at(0.0, {std::vector<double>(19, 1.0)}), Each(IsNear(1.0)));
-  EXPECT_THAT(ViscosityOf(law).at(2.0, {std::vector<double>(19, 1.0)}), Each(IsNear(3.0)));
-  EXPECT_THAT(ViscosityOf(law).at(0.0, {std::vector<double>(19, 2.0)}), Each(IsNear(5.0)));
-  EXPECT_THAT(ViscosityOf(law).at(1.0, {std::vector<double>(19, 1.5)}), Each(IsNear(4.0)));
-}
-
-// A field may itself be a table over the time.
-TEST(Tables, AreReadAtAFieldThatIsATableOverTime) {
-  const ilaw::interface law = Probe("pack_probe")
-                                  .table("viscosity", {degrees}, {1.0, 2.0, 4.0})
-                                  .table("temperature", {seconds}, {200.0, 300.0})
-                                  .make();
-  EXPECT_THAT(ViscosityOf(law).at(0.0), Each(IsNear(0.9)));
-  EXPECT_THAT(ViscosityOf(law).at(2.0), Each(IsNear(2.0)));
-}
-
-TEST(Tables, AreRefusedByWhatIsWrong) {
-  const auto refusal = [](const std::vector<Axis>& axes, const std::vector<double>& values,
-                          bool has_field = true) {
-    Probe probe("pack_probe");
-    if (has_field) probe.per_node("temperature");
-    return probe.table("viscosity", axes, values).refusal();
-  };
-  EXPECT_THAT(
-      refusal({degrees}, {1, 2, 3}, false),
-      HasSubstr(
-          "'viscosity' is a table over 'temperature': expected a value, a value per node or a table over time"));
-  EXPECT_THAT(refusal({{"moisture", {0.0}}}, {1}),
-              HasSubstr("axis 'moisture' of the table is unknown: expected one of 'time', "
-                        "'temperature', 'hardness'"));
-  EXPECT_THAT(refusal({seconds, seconds}, {1, 2, 3, 4}), HasSubstr("the table has twice the axis time"));
-  EXPECT_THAT(refusal({{"time", {1.0, 1.0}}}, {1, 2}),
-              HasSubstr("point 1 of axis 'time' is 1: expected finite, increasing points"));
-  EXPECT_THAT(refusal({seconds}, {1, -2}), HasSubstr("'viscosity' = -2 is not allowed"));
-}
-
 // Values that go together at each node only.
 TEST(Tables, AreJudgedForConflictsAtEachNode) {
   const ilaw::interface law = Probe("pack_probe")

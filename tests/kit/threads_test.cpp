@@ -1,7 +1,7 @@
 // Concurrent use: evaluate by one instance, open and close one library. A program of its own, so
 // that the thread sanitizer need not build all others.
-#include "batch_runner.hpp"
 #include "kit_probe.hpp"
+#include "mixed_nodes.hpp"
 
 #include "support/law_cases.hpp"
 
@@ -20,12 +20,14 @@ void run_in_threads(int count, const Task& task) {
 class Threads : public ::testing::TestWithParam<LawCase> {};
 
 TEST_P(Threads, ShareAnInstance) {
-  const ilaw::interface law = make_tested_law(
-      GetParam().law, SetupBuilder(GetParam().parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_LOCAL));
-  const Results reference = run(law, Nodes(300), {});
-  std::vector<Results> results(4);
-  run_in_threads(4, [&](std::size_t t) { results[t] = run(law, Nodes(300), {}); });
-  for (const Results& mine : results) EXPECT_TRUE(mine == reference);
+  const MixedNodes nodes(
+      make_tested_law(GetParam().law,
+                      SetupBuilder(GetParam().parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_LOCAL)),
+      300);
+  const MixedNodes reference = nodes.stepped();
+  std::vector<MixedNodes> results(4, nodes);
+  run_in_threads(4, [&](std::size_t t) { results[t] = nodes.stepped(); });
+  for (const MixedNodes& mine : results) EXPECT_TRUE(mine == reference);
 }
 
 TEST_P(Threads, OpenAndCloseALibrary) {

@@ -51,31 +51,5 @@ TEST(WrongBatch, FlagsThatAreNotKnownAreRefused) {
   EXPECT_STREQ(node.report.reason, "the batch tells bonds to hold or break, of a law that cannot hold bonds");
 }
 
-TEST(WrongBatch, InitialiseRefusesStatesOnTopOfEachOther) {
-  const ilaw::interface law = make_probe();
-  SmallBatch nodes(2, {}, law.info().state_size);
-  std::fill(nodes.state.begin(), nodes.state.end(), 7.0);
-  for (const auto& [node_stride, component_stride] : {std::pair{0, 1}, {10, 0}}) {
-    nodes.b.state_out = ilaw::output(nodes.state.data(), node_stride, component_stride);
-    EXPECT_EQ(law.law().initialise(law.instance(), &nodes.b, &nodes.report), ILAW_INVALID_ARGUMENT);
-    EXPECT_STREQ(nodes.report.reason, "state_out has a stride of 0");
-    EXPECT_EQ(nodes.state[0], 7.0);
-  }
-}
-
-// initialise writes the first state, and must not read what lies there before.
-TEST(Initialise, ReadsNoState) {
-  const ilaw::interface law = make_probe(ILAW_FRAME_GLOBAL);
-  const double normal[] = {0.36, 0.48, 0.8};
-  SmallBatch node(1, {}, law.info().state_size);
-  node.b.normal = ilaw::input(normal, 0, 1);
-  ASSERT_EQ(law.initialise(node.b), ILAW_OK);
-  const std::vector<double> expected = node.state, rubbish(node.state.size(), 0.6);
-  std::fill(node.state.begin(), node.state.end(), nan_value);
-  node.b.state_in = ilaw::input(rubbish.data(), 0, 1);
-  ASSERT_EQ(law.initialise(node.b), ILAW_OK);
-  EXPECT_EQ(node.state, expected);
-}
-
 }  // namespace
 }  // namespace ilaw::testing

@@ -11,6 +11,16 @@
 
 namespace ilaw::host {
 
+// Items of a chunk. With ILAW_HOSTILE they are few, so that small models have several chunks; whole nodes and
+// packs all the same.
+constexpr std::ptrdiff_t chunk_of(std::ptrdiff_t usual) {
+#ifdef ILAW_HOSTILE
+  return usual > 24 ? 24 : usual;
+#else
+  return usual;
+#endif
+}
+
 constexpr std::ptrdiff_t chunks_of(std::ptrdiff_t count, std::ptrdiff_t chunk) {
   return (count + chunk - 1) / chunk;
 }

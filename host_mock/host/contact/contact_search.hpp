@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/parallel.hpp"
 #include "contact/contact_arrays.hpp"
 #include "contact/law.hpp"
 #include "contact/obstacle_motion.hpp"
@@ -16,7 +17,7 @@
 namespace ilaw::host {
 
 // Nodes of an interface whose contacts a thread takes at a time.
-constexpr std::ptrdiff_t contact_chunk = 2048;
+constexpr std::ptrdiff_t contact_chunk = chunk_of(2048);
 
 // Some contacts, by contact_index, and the nodes of the model that they are of.
 struct NearContacts {

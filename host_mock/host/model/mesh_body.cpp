@@ -15,7 +15,7 @@ namespace ilaw::host {
 namespace {
 
 // Elements that are worth a thread; in a box below fewest_in_box threads cost more than they bring.
-constexpr std::ptrdiff_t element_chunk = 128;
+constexpr std::ptrdiff_t element_chunk = chunk_of(128);
 constexpr std::size_t fewest_in_box = 512;
 
 // Corners of the reference cube, in VTK's order.

@@ -17,7 +17,7 @@ namespace ilaw::host {
 void leave_driven_undamped(const Loads& loads, Eigen::Index d, const Dofs& undamped, Dofs& v, Dofs& impulse);
 
 // Degrees of freedom that are worth a thread: whole nodes in 1D, 2D and 3D.
-constexpr std::ptrdiff_t dof_chunk = 6 * 4096;
+constexpr std::ptrdiff_t dof_chunk = chunk_of(6 * 4096);
 
 // Calls f(first, end) for parts of the degrees of freedom. f touches those in [first, end) alone.
 template <class F>

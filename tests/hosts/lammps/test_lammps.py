@@ -139,15 +139,6 @@ def test_a_bounce_on_the_border_of_two_runs_is_not_lost(tmp_path):
         assert read(tmp_path, "bounced")[0][6] == pytest.approx(1.0, abs=1e-14), steps
 
 
-def test_ranks_agree_to_the_tolerance(tmp_path):
-    short = "sweeps 2000 tol 1e-12"
-    lammps(tmp_path, pile(sweeps=short) + "run 100\n" + state("alone"))
-    lammps(tmp_path, "processors 2 1 1\n" + pile(sweeps=short) + "run 100\n" + state("two"), ranks=2)
-    alone = read(tmp_path, "alone")
-    assert max(abs(row[6]) for row in alone) > 1e-3, "nothing happened"
-    assert difference(alone, read(tmp_path, "two")) < 1e-7
-
-
 # Two grains hit each other off centre, are bonded by that, and turn: the bond carries what else they would fly
 # apart with, on both sides of the border of ranks, across which they go.
 PAIR = (BEGIN + "processors * 1 1\nregion box block 0 6 0 4 0 4\ncreate_box 1 box\n"
@@ -278,33 +269,6 @@ def test_a_ball_rolls_out(tmp_path, dt):
     assert x == pytest.approx(0.5 / a, abs=a * float(dt) ** 2 / 8 + 1e-10)
     assert max(map(abs, [y, z - RADIUS, *motion])) < 1e-13
     assert float((tmp_path / "lost").read_text()) == pytest.approx(0.7 * MASS_OF_BALL, rel=1e-11)
-
-
-# rho m g cos holds R m g sin; above that 7/5 a = g (sin - rho/R cos).
-@pytest.mark.parametrize("dt", STEPS_OF_BALLS)
-def test_rolling_resistance_holds_a_ball_on_a_slope_up_to_a_limit(tmp_path, dt):
-    begin, wall = balls(dt, (0, -0.5), (0, 0.5))
-    limit, steps = math.atan(RHO / RADIUS), steps_until(1, dt)
-    lammps(tmp_path, begin + pull(1, 0.98 * limit) + pull(2, 1.02 * limit) + wall + f"run {steps}\n" + state("end"))
-    below, above = read(tmp_path, "end")
-    assert max(map(abs, [below[1], *below[4:]])) < 1e-14
-    a = GRAVITY / 1.4 * (math.sin(1.02 * limit) - RHO / RADIUS * math.cos(1.02 * limit))
-    time = steps * float(dt)
-    assert above[4] == pytest.approx(a * time, rel=1e-9)
-    assert above[1] == pytest.approx(a * time**2 / 2, rel=1e-9)
-    assert RADIUS * above[8] == pytest.approx(a * time, rel=1e-9)
-
-
-# I dw/dt = -tau m g stops it after (2/5) R^2 w0/(tau g).
-@pytest.mark.parametrize("dt", STEPS_OF_BALLS)
-def test_a_top_spins_down(tmp_path, dt):
-    begin, wall = balls(dt, (0, 0))
-    stops = 0.4 * RADIUS**2 * 30 / (TAU * GRAVITY)
-    early = steps_until(0.7 * stops, dt)
-    lammps(tmp_path, begin + pull(1) + "set atom 1 omega 0 0 30\n" + wall + f"run {early}\n" + state("early")
-           + f"run {steps_until(stops, dt) + 2 - early}\n" + state("end"))
-    assert read(tmp_path, "early")[0][9] == pytest.approx(30 * (1 - early * float(dt) / stops), rel=1e-10)
-    assert max(map(abs, read(tmp_path, "end")[0][4:])) < 1e-12
 
 
 # Pressed together by F: one pair turns like two gears, the other about the line of its centres. Each grain loses

@@ -95,37 +95,5 @@ TEST(CohesiveAnyInertia, SolvesTheEquationsOfThePage) {
   solved.expect_variety();
 }
 
-// A mass with any inverse on its bond, pushed at random: whatever way it goes, a bond of one toughness has
-// dissipated that when it is broken, in steps of any length.
-TEST(CohesiveAnyInertia, TakesTheToughness) {
-  Draw draw(22);
-  int broken = 0;
-  for (int bond = 0; bond < 150 && !HasFailure(); ++bond) {
-    Parameters p = draw.bond();
-    for (const char* name : {"toughness_2", "strength_2", "delay_time", "delay_exponent", "friction"})
-      p.numbers.erase(name);
-    const Inertia inertia(draw, 3.0);
-    const double step = std::array{0.2, 0.037, 0.0113}[static_cast<std::size_t>(bond % 3)];
-    NodeRun node("cohesive", p, step, ILAW_DELASSUS_FULL);
-    node.h = inertia.entries();
-    Vector bias = draw.vector(6.0);
-    bias[0] = 6.0;
-    double taken = 0.0;
-    for (int k = 0; k < 2000 && node.named("damage") < 1.0; ++k) {
-      Vector force = draw.vector(6.0), free = node.v;
-      for (std::size_t c = 0; c < 3; ++c) force[c] += bias[c] * (1.0 + step * k);
-      const Vector kick = times(inertia.h, force);
-      for (std::size_t c = 0; c < 3; ++c) free[c] += step * kick[c];
-      if (node.step(free) != ILAW_OK) break;  // several solutions
-      taken += node.energy[ILAW_ENERGY_RUPTURE];
-    }
-    // Pressed as it breaks: what the impact takes is in it too.
-    if (node.named("damage") < 1.0 || node.named("opening") < 1e-9) continue;
-    ++broken;
-    EXPECT_NEAR(taken, p.numbers["toughness"], 1e-9) << "bond " << bond << ", step " << step;
-  }
-  EXPECT_GT(broken, 30);
-}
-
 }  // namespace
 }  // namespace ilaw::testing

@@ -72,35 +72,6 @@ TEST(Coulomb, KeepsComplementarityConeAndDirectionAtAnyScale) {
   EXPECT_GT(slips, 10000);
 }
 
-// Among all impulses of the cone, the one chosen takes most from the slip (maximum dissipation).
-TEST(Coulomb, DissipatesAtMost) {
-  Random draw(2);
-  NodeRun node("coulomb", {{{"friction", 0.4}}, {}});
-  for (int k = 0; k < 20000; ++k) {
-    node.h[0] = draw(0.1, 3.0);
-    node.gap = 0.0;
-    node.v_previous = {};
-    ASSERT_EQ(node.step(draw.vector(draw.decades(-1.0, 1.0))), ILAW_OK) << "k " << k;
-    const double angle = draw(0.0, 2.0 * M_PI), size = draw(0.0, 0.4 * node.r[0]);
-    const double other = size * (std::cos(angle) * node.v[1] + std::sin(angle) * node.v[2]);
-    ASSERT_LE(node.r[1] * node.v[1] + node.r[2] * node.v[2], other + 1e-14) << "k " << k;
-  }
-}
-
-// H = diag(h_N, h_T, h_T): the same closed form.
-TEST(Coulomb, TakesADiagonalHByTheSameClosedForm) {
-  NodeRun node("coulomb", {{{"friction", 0.5}}, {}}, 1e-3, ILAW_DELASSUS_DIAGONAL);
-  node.gap = 0.0;
-  node.h = {2.0, 4.0, 4.0};
-  ASSERT_EQ(node.step({-1.0, 0.6, 0.8}), ILAW_OK);  // sticking needs 0.25 = 0.5 * 0.5, the border
-  EXPECT_EQ(node.status, ILAW_STICK);
-  EXPECT_NEAR(node.r[1], -0.15, 1e-16);
-  ASSERT_EQ(node.step({-1.0, 1.2, 1.6}), ILAW_OK);
-  EXPECT_EQ(node.status, ILAW_SLIP);
-  EXPECT_NEAR(node.r[1], -0.15, 1e-16);
-  EXPECT_NEAR(node.r[2], -0.2, 1e-16);
-}
-
 // A speed at rounding level of what was stopped is none: a contact that stuck has its static coefficient.
 TEST(Coulomb, RoundingOfAContactThatStuckIsNoSlip) {
   for (const auto& [speed, status] : {std::pair{0.0, ILAW_STICK}, {1e-12, ILAW_STICK}, {1e-6, ILAW_SLIP}}) {

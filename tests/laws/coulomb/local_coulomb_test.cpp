@@ -62,24 +62,6 @@ TEST(CoulombDelassus, TakesANegligibleCoefficientForZero) {
   }
 }
 
-// Without force and restitution the work r.(v^- + v)/2 is never positive: r.v is the dissipation by slip, and
-// r.v^- = r.v - r.H r.
-TEST(CoulombDelassus, NeverCreatesEnergyAndDissipatesAtMost) {
-  LawBatch contacts = contacts_of({{{"friction", 0.5}, {"friction_2", 0.2}}, {}}, 100000);
-  Draw draw(42);
-  fill(contacts, draw);
-  ASSERT_EQ(contacts.evaluate(), ILAW_OK);
-  for (std::size_t i = 0; i < contacts.v_free.size(); ++i) {
-    const Vector &r = contacts.r[i], &v = contacts.v[i];
-    const double natural = (1.0 + dot(r, r)) * 30.0;
-    ASSERT_LE(dot(r, contacts.v_free[i]) + dot(r, v), 1e-14 * natural) << "i " << i;
-    // No impulse of the ellipse takes more from this slip.
-    const double angle = draw(0.0, 6.2832);
-    const double other = r[0] * (0.5 * std::cos(angle) * v[1] + 0.2 * std::sin(angle) * v[2]);
-    ASSERT_LE(r[1] * v[1] + r[2] * v[2], other + 1e-14 * natural) << "i " << i;
-  }
-}
-
 // Newton's coefficient where H couples (Kane 1984): sticking, r = -H^-1 q with q = v^- + (e v_N^-, 0), the
 // work is -q.H^-1 q/2 + e r_N, for v^- = (-1, -w) a gain of (e^2 + w^2 - 1)/(2 (1 - w^2)), which the law
 // takes off. Equal coefficients lose 1 - e^2.
@@ -163,19 +145,6 @@ TEST(KineticFriction, FallsFromTheStaticOneWithTheSlipSpeed) {
   }
 }
 
-TEST(KineticFriction, AboveTheStaticOneDoesNothing) {
-  NodeRun plain("coulomb", {{{"friction", 0.3}}, {}});
-  NodeRun above("coulomb", {{{"friction", 0.3}, {"kinetic_friction", 0.4}, {"decay", 1.0}}, {}});
-  Draw draw(45);
-  for (int k = 0; k < 1000; ++k) {
-    const Vector q{-std::abs(draw.normal()), draw.normal(), draw.normal()};
-    plain.v_previous = above.v_previous = {0.0, draw.normal(), draw.normal()};
-    ASSERT_EQ(plain.step(q), ILAW_OK) << "k " << k;
-    ASSERT_EQ(above.step(q), ILAW_OK) << "k " << k;
-    ASSERT_EQ(plain.r, above.r) << "k " << k;
-  }
-}
-
 // A kinetic coefficient between the two static ones leaves the smaller as it is, at rest and at any speed.
 TEST(KineticFriction, LeavesTheSmallerOfTwoCoefficientsAsItIs) {
   for (const double decay : {0.7, inf_value}) {
@@ -186,64 +155,6 @@ TEST(KineticFriction, LeavesTheSmallerOfTwoCoefficientsAsItIs) {
       ASSERT_EQ(node.step({-1.0, 0.0, -8.0}), ILAW_OK) << "decay " << decay << ", speed " << speed;
       EXPECT_NEAR(node.r[2], 0.1, 4 * ulp) << "decay " << decay << ", speed " << speed;
     }
-  }
-}
-
-// Mass m on a spring k, pressed with N on a belt of speed V. It sticks until k x = mu N, then slips about x_k
-// = mu_k N/k as x = x_k + A cos(wt) + (V/w) sin(wt), A = (mu - mu_k) N/k, w^2 = k/m, until its speed is V
-// again: that is when tan(wt/2) = -A w/V, at x_k - A. Period: 2 A/V + (2 pi - 2 atan(A w/V))/w.
-TEST(StickSlip, HasThePeriodOfTheClosedForm) {
-  constexpr double k = 4.0, weight = 10.0, belt = 0.3, mu = 0.5, mu_k = 0.3, w = 2.0, amplitude = 0.5;
-  const double period = 2.0 * amplitude / belt + (2.0 * M_PI - 2.0 * std::atan(amplitude * w / belt)) / w;
-  const auto measured = [&](double dt) {
-    NodeRun node("coulomb", {{{"friction", mu}, {"kinetic_friction", mu_k}}, {}}, dt);
-    double x = 0.0, v = belt, first = 0.0, last = 0.0;
-    int releases = 0;
-    bool stuck = true;
-    for (int step = 0; releases < 6; ++step) {
-      x += dt * v;
-      node.v_previous = {0.0, v - belt, 0.0};
-      EXPECT_EQ(node.step({-dt * weight, v - belt - dt * k * x, 0.0}), ILAW_OK) << "step " << step;
-      v = node.v[1] + belt;
-      if (stuck && node.status == ILAW_SLIP) {
-        if (releases++ == 0) first = dt * step;
-        last = dt * step;
-        EXPECT_NEAR(x, mu * weight / k, 2.0 * dt * belt) << "step " << step;
-      }
-      stuck = node.status == ILAW_STICK;
-    }
-    return (last - first) / 5.0;
-  };
-  EXPECT_NEAR(measured(1e-2), period, 2e-2);
-  EXPECT_NEAR(measured(1e-3), period, 2e-3);
-}
-
-// A ball, I = 2/5 m R^2, thrown on a plane with velocity V and spin: its lowest point, at U = V + spin x R,
-// has the inverse masses 1/m and 1/m + R^2/I = 7/(2m). It slides with U straight to zero, which takes
-// |U|/(7/2 mu g), while V loses 2/7 U: from then on it rolls, at 5/7 V where it was thrown without spin,
-// backwards where it was thrown with enough backspin.
-TEST(Ball, SlidesUntilItRolls) {
-  constexpr double m = 0.7, g = 9.81, mu = 0.3, h = 1e-4;
-  for (const auto& [v0, spin] : {std::pair{Vector{0.0, 2.0, 0.0}, Vector{}},
-                                 {Vector{0.0, 2.0, 0.0}, Vector{0.0, 7.0, 0.0}},
-                                 {Vector{0.0, 1.5, -0.4}, Vector{0.0, 0.3, 2.0}}}) {
-    NodeRun node("coulomb", {{{"friction", mu}}, {}}, h, ILAW_DELASSUS_DIAGONAL);
-    node.h = {1.0 / m, 3.5 / m, 3.5 / m};
-    const Vector u0{0.0, v0[1] + spin[1], v0[2] + spin[2]};
-    const double slides = std::hypot(u0[1], u0[2]) / (3.5 * mu * g);
-    Vector v = v0, turning = spin;  // of the centre; of the lowest point about it
-    for (int k = 1; k * h < 2.0 * slides; ++k) {
-      ASSERT_EQ(node.step({-h * g, v[1] + turning[1], v[2] + turning[2]}), ILAW_OK) << "k " << k;
-      for (std::size_t c = 1; c < 3; ++c) {
-        v[c] += node.r[c] / m;
-        turning[c] += 2.5 / m * node.r[c];
-        const double left = std::max(1.0 - k * h / slides, 0.0);
-        ASSERT_NEAR(v[c] + turning[c], left * u0[c], 2.0 * h * mu * g * 3.5) << "k " << k << ", c " << c;
-      }
-      ASSERT_EQ(node.status, k * h < slides ? ILAW_SLIP : ILAW_STICK) << k * h << " of " << slides;
-    }
-    for (std::size_t c = 1; c < 3; ++c)
-      EXPECT_NEAR(v[c], v0[c] - u0[c] / 3.5, 2.0 * ulp * slides / h);  // an ulp of 2 per step
   }
 }
 

@@ -140,22 +140,6 @@ TEST(Compression, PowerLawSolvesItsEquation) {
   EXPECT_GT(closed, 100 * instances);
 }
 
-// Exponent 1 by the general route would be the same: continuity in the exponent.
-TEST(Compression, PowerLawTendsToLinear) {
-  for (const double stiffness : {1e-3, 1e2, 1e4, 1e6, 1e12})
-    for (const double v : {-1.0, 0.3, 9.0}) {
-      NodeRun linear("penalty", implicit({{"stiffness", stiffness}, {"damping", 3.0}}), 1e-2);
-      NodeRun nearly("penalty",
-                     implicit({{"stiffness", stiffness}, {"damping", 3.0}, {"exponent", 1.0 + 1e-13}}), 1e-2);
-      linear.gap = nearly.gap = -0.02;
-      linear.state[0] = nearly.state[0] = 0.02;
-      ASSERT_EQ(linear.step({v, 0, 0}), ILAW_OK);
-      ASSERT_EQ(nearly.step({v, 0, 0}), ILAW_OK);
-      EXPECT_NEAR(nearly.r[0], linear.r[0], 1e-11 * linear.r[0]) << stiffness << " " << v;
-      EXPECT_NEAR(nearly.state[0], linear.state[0], 1e-11) << stiffness << " " << v;
-    }
-}
-
 // k -> inf: v = -e v^- of a node that arrives; one that leaves but is pulled back may turn round, at most at
 // the speed with which it left. At k = inf to the last bits, and at the rate 1/(1 + h^2 k H/4) before.
 TEST(Compression, TendsToNewtonsImpact) {

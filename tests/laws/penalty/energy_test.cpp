@@ -123,24 +123,6 @@ class ImplicitEnergy : public ::testing::TestWithParam<std::tuple<std::uint32_t,
   int refused_ = 0;
 };
 
-// A soft spring that presses little, and a velocity that was turned round in part: what rounding leaves of
-// the tangential velocity is large beside the normal impulse, and may do no work.
-TEST(PenaltyStick, OfWhatTurnedRoundDoesNoWork) {
-  Random random(5);
-  NodeRun node("penalty", {{{"stiffness", 1e-6}, {"friction", 1.0}}, {{"integration", "implicit"}}});
-  for (int draw = 0; draw < 100000 && !::testing::Test::HasFatalFailure(); ++draw) {
-    const double part = 1.2 * random(0.0, 1.0);
-    const Vector previous{-1.0, random(0.0, 1.0) - 0.5, random(0.0, 1.0) - 0.5};
-    node.state.assign(node.state.size(), 0.0);
-    node.gap = 0.0;
-    node.v_previous = previous;
-    ASSERT_EQ(node.step({-1.0, -part * previous[1], -part * previous[2]}), ILAW_OK);
-    const double work = 0.5 * (node.r[1] * (previous[1] + node.v[1]) + node.r[2] * (previous[2] + node.v[2]));
-    const double scale = std::abs(node.r[1]) + std::abs(node.r[2]);
-    ASSERT_LE(work, 16 * ulp * scale) << "draw " << draw << ", turned " << part;
-  }
-}
-
 TEST_P(ImplicitEnergy, GivesBackWhatItDoesNotDissipate) {
   Draw& random = random_;
   for (int instance = 0; instance < 500 && !HasFatalFailure(); ++instance) {

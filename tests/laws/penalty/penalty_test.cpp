@@ -95,36 +95,6 @@ TEST(PenaltyFriction, RigidSpringsAreCoulomb) {
       }
 }
 
-// A rigid tangential spring that meets a node whose slip turned round within the step stops it without
-// giving it energy; Coulomb's stick would, by what the free velocity lost.
-TEST(PenaltyFriction, RigidStickDoesNoWork) {
-  Random random(7);
-  NodeRun node("penalty", with("implicit", {{"stiffness", 1e5}, {"friction", 0.4}}));
-  int turned = 0;
-  for (int k = 0; k < 100000; ++k) {
-    const Vector before = random.vector();
-    node.v_previous = before;
-    node.state = {std::abs(random()) * 1e-2, 0.0, 0.0, 0.0};
-    ASSERT_EQ(node.step(random.vector()), ILAW_OK);
-    const double work = 0.5 * (node.r[1] * (before[1] + node.v[1]) + node.r[2] * (before[2] + node.v[2]));
-    ASSERT_LE(work, 4 * ulp) << k;
-    turned += before[1] * node.v_free[1] + before[2] * node.v_free[2] < 0.0 && node.status == ILAW_STICK;
-  }
-  EXPECT_GT(turned, 5000);
-}
-
-// Without friction only the normal row of H counts.
-TEST(Penalty, WithoutFrictionServesAnyH) {
-  NodeRun smooth("penalty", with("implicit", {{"stiffness", 1e3}}), 1e-2, ILAW_DELASSUS_FULL);
-  smooth.h = {4.0, 3.0, 2.0, 1.0, -0.5, 0.25};
-  smooth.gap = -0.1;
-  smooth.state[0] = 0.1;
-  ASSERT_EQ(smooth.step({-2.0, 1.0, 1.0}), ILAW_OK);
-  // r (1 + h^2 k H_NN/4) = h k (x - h (v_free + v^-)/4) = 10 * 0.105.
-  EXPECT_NEAR(smooth.r[0], 1.05 / 1.1, 1e-15);
-  EXPECT_NEAR(smooth.v[1], 1.0 + 1.05 / 1.1, 1e-15);
-}
-
 // With friction: the spring of a sticking node moves along and pulls with its mean, one that slides pulls
 // with mu r_N the way its mean would be strained. Whatever the normal spring, coupling and all.
 TEST(Penalty, WithFrictionServesAnyH) {
@@ -201,25 +171,6 @@ TEST(Penalty, UsesEachStepWhereItBelongs) {
   }
 }
 
-// A state from elsewhere is refused, and nothing is lost: r = 0, the state as it was.
-TEST(Penalty, RefusesStateThatItCannotHaveWritten) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const auto& [integration, x, reason] :
-       {std::tuple<const char*, double, const char*>{"implicit", -1e-9, "cannot have written"},
-        {"explicit", 1e-9, "can have written"},
-        {"implicit", nan, "not finite"},
-        {"implicit", inf_value, "not finite"}}) {
-    NodeRun node("penalty", with(integration, {{"stiffness", 1e3}}));
-    node.gap = -0.01;
-    node.state[0] = x;
-    ASSERT_EQ(node.step({-1.0, 0.0, 0.0}), ILAW_BAD_NODES) << integration << " " << x;
-    EXPECT_THAT(node.report.reason, HasSubstr(reason));
-    EXPECT_EQ(node.r[0], 0.0);
-    EXPECT_EQ(node.status, ILAW_BAD_INPUT);
-    EXPECT_TRUE(node.state[0] == x || (std::isnan(x) && std::isnan(node.state[0])));
-  }
-}
-
 // The explicit form: the configuration and the half step before, not what the step leads to.
 TEST(Penalty, ExplicitReadsWhatIsKnownBefore) {
   for (const double exponent : {1.0, 1.5}) {
@@ -246,16 +197,6 @@ TEST(Penalty, AnExplicitDamperWaitsForTouch) {
     EXPECT_EQ(node.r[0], 0.0) << "gap " << gap;
     EXPECT_EQ(node.status, ILAW_FREE) << "gap " << gap;
   }
-}
-
-// A damper slows down what leaves, up to the spring's own push, and never holds it.
-TEST(Penalty, AnExplicitDamperDoesNotPull) {
-  NodeRun node("penalty", {{{"stiffness", 2.0}, {"damping", 100.0}}, {{"integration", "explicit"}}}, 1e-3);
-  node.gap = -0.01;
-  node.v_previous = {1.0, 0.0, 0.0};
-  ASSERT_EQ(node.step({1.0, 0.0, 0.0}), ILAW_OK);
-  EXPECT_EQ(node.r[0], 0.0);
-  EXPECT_EQ(node.status, ILAW_FREE);
 }
 
 }  // namespace
