@@ -36,9 +36,12 @@ class History {
 
   std::vector<std::string> columns() const;
   const Forces& forces() const { return forces_; }
-  // The state beside the integrator on which the next row depends.
-  void save(std::ostream& out) const;
-  void load(std::istream& in);
+  // The state beside the integrator on which the next row depends, by name: a resumed run may have other
+  // columns.
+  nlohmann::json state() const;
+  void load(const nlohmann::json& state, std::int64_t step);
+  // Warnings of sums that do not begin at the start of the run.
+  const std::vector<std::string>& late_sums() const { return late_sums_; }
 
  private:
   // A watched node in one interface.
@@ -63,6 +66,7 @@ class History {
   std::vector<std::vector<Contact>> contacts_;  // per watched node
   std::vector<bool> is_alone_;                  // per watched node: no interface acts on it
   std::vector<std::size_t> motions_;            // loads that drive a watched node
+  std::vector<std::string> late_sums_;
   Forces forces_;
 };
 
