@@ -222,7 +222,7 @@ void Integrator::add_load_reactions(StepTimes step) {
 // law that is given no gap or normal, as bodies are gone too far, is not to be blamed.
 void Integrator::add_reactions(const StepView& step) try {
   if (coupled_)
-    add_coupled_reactions(step);
+    accept_solution(step, coupled_->solve(step, contact_inverse_mass(), v_));
   else
     for (const auto& interface : interfaces_) interface->solve(step, v_);
 } catch (const ilaw::error&) {
@@ -233,8 +233,7 @@ void Integrator::add_reactions(const StepView& step) try {
 }
 
 // What ends the run does so before states are accepted.
-void Integrator::add_coupled_reactions(const StepView& step) {
-  const ilaw_coupled_report& solution = coupled_->solve(step, contact_inverse_mass(), v_);
+void Integrator::accept_solution(const StepView& step, const ilaw_coupled_report& solution) {
   coupled_->check_results(step, v_);
   if (solution.other_law || accounts_.is_wrong(model_, solution, v_before_))
     if (const std::string why = coupled_->explain(); !why.empty()) throw std::runtime_error(why);

@@ -120,7 +120,7 @@ class Integrator {
   void begin_anew();
   void hold_driven_before();
   void add_reactions(const StepView& step);
-  void add_coupled_reactions(const StepView& step);
+  void accept_solution(const StepView& step, const ilaw_coupled_report& solution);
   const double* contact_inverse_mass() const {
     return contact_inverse_mass_.size() > 0 ? contact_inverse_mass_.data() : inverse_mass_.data();
   }
