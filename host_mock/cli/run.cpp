@@ -152,8 +152,7 @@ class Run {
     remove_files(std::string(written_at_once) + "\\.partial");  // those that a killed run was writing
     fields_.resume(checkpoint.fields);
     record.resumed_at = checkpoint_step_ = integrator_.steps();
-    const bool goes_on =
-        same_columns(checkpoint.output, scene_.source.value("output", nlohmann::json::object()));
+    const bool goes_on = history_.continues(checkpoint.history_state);
     resume_history(checkpoint, goes_on);
     resume_events(checkpoint);
     if (!goes_on) write_checkpoint_now();  // the one before it goes on from rows with other columns

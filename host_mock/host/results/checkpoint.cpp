@@ -135,10 +135,8 @@ Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std
   Checkpoint checkpoint;
   try {
     check_identity(content["identity"], identity_of(scene));
-    checkpoint = {
-        mark_of(content.at("history")), content.at("fields"),
-        content.at("history_state"),    mark_of(content.at("events")),
-        content.at("events_state"),     content["identity"]["scene"].value("output", json::object())};
+    checkpoint = {mark_of(content.at("history")), content.at("fields"), content.at("history_state"),
+                  mark_of(content.at("events")), content.at("events_state")};
     std::istringstream state(text_of(content.at("state")));
     integrator.load(state);
     if (integrator.steps() > scene.steps)

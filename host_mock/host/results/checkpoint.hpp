@@ -18,7 +18,6 @@ struct Checkpoint {
   nlohmann::json history_state = {};  // what its next row depends on
   FileMark events = {};               // what of events.csv belongs to it
   nlohmann::json events_state = {};   // what the next events depend on
-  nlohmann::json output = {};         // what the scene asked for, when it was written
 };
 
 // Replaces folder/checkpoint.cbor, whole or not at all.

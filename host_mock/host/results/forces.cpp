@@ -126,6 +126,12 @@ json Forces::about(std::size_t k) const {
   return point ? json(list_of(*point)) : json();
 }
 
+json Forces::points() const {
+  json all = json::array();
+  for (std::size_t k = 0; k < sums_.size(); ++k) all.push_back(about(k));
+  return all;
+}
+
 json Forces::summary() const {
   json all = json::object();
   for (std::size_t k = 0; k < sums_.size(); ++k) {

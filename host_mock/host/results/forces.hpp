@@ -32,6 +32,8 @@ class Forces {
   // Per name the impulse of the whole run, and the largest size of the force at the start or in a row.
   nlohmann::json summary() const;
 
+  // The points that moments are about, null for forces without one.
+  nlohmann::json points() const;
   // The sums so far, by name, for the checkpoint.
   nlohmann::json state() const;
   // Returns the names that the state has not: their sums begin now.

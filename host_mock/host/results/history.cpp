@@ -26,12 +26,6 @@ void for_each_state(const ilaw_instance_info& info, Visit visit) {
 
 }  // namespace
 
-bool same_columns(const nlohmann::json& one, const nlohmann::json& other) {
-  for (const char* key : {"watch", "forces", "balance", "contact"})
-    if (one.value(key, nlohmann::json()) != other.value(key, nlohmann::json())) return false;
-  return true;
-}
-
 History::History(const Scene& scene, Integrator& integrator) : scene_(scene), forces_(scene, integrator) {
   find_contacts();
   find_motions(integrator);
@@ -175,7 +169,7 @@ nlohmann::json History::state() const {
   for (const std::vector<Contact>& contacts : contacts_)
     for (const Contact& contact : contacts)
       if (scene_.output.contact) sums[contact.prefix] = {contact.slip, contact.wear};
-  return {{"forces", forces_.state()}, {"contacts", sums}, {"late_sums", late_sums_}};
+  return {{"columns", layout()}, {"forces", forces_.state()}, {"contacts", sums}, {"late_sums", late_sums_}};
 }
 
 void History::load(const nlohmann::json& state, std::int64_t step) {

@@ -63,13 +63,13 @@ void Integrator::step() {
     speed_free = kick(times);  // v_free = v + (h/m) f
   }
   check_motion(speed_free, times.after);  // before the laws see it, too: they must not be blamed
-  laps.add_to(force_ticks_);
+  laps.add_to(seconds_.internal_forces);
   if (!transmits_steadily_ && !interfaces_.empty()) find_contact_mass(times);
   if (temperatures_) temperatures_->conduct(times);  // T_free = T + C^-1 h (q - K T)
   // r = law(v_free, H, gap, state, T_free), v = v_free + H r
   add_reactions({u_, v_before_, times.after, dt_, speed_before_, speed_free, steps_ + 1});
   if (contact_inverse_mass_.size() > 0) add_load_reactions(times);
-  laps.add_to(interface_ticks_);
+  laps.add_to(seconds_.interfaces);
   const WorkAndSpeed external = work_and_speed(external_impulse_, v_before_, v_, model_.dimension());
   speed_before_ = external.speed;
   check_motion(speed_before_, times.after);
