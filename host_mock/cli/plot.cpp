@@ -23,19 +23,19 @@ void add_list(std::vector<std::string>& arguments, const std::string& option,
   if (!words.empty()) arguments.push_back(text);
 }
 
-int plot(const PlotOptions& options) {
+void plot(const PlotOptions& options) {
   std::vector<std::string> arguments = {"--x=" + options.x};
   add_list(arguments, "--panels", options.panels);
   add_list(arguments, "--y", options.y);
   if (!options.out.empty()) arguments.push_back("--out=" + options.out);
   arguments.emplace_back("--");
   arguments.insert(arguments.end(), options.folders.begin(), options.folders.end());
-  return run_python("ilaw.plot", arguments, "numpy, matplotlib", "python3-numpy python3-matplotlib");
+  run_python("ilaw.plot", arguments, "numpy, matplotlib", "python3-numpy python3-matplotlib");
 }
 
 }  // namespace
 
-void add_plot(CLI::App& app, int& code) {
+void add_plot(CLI::App& app, int& /*code*/) {
   const auto options = std::make_shared<PlotOptions>();
   CLI::App* command = app.add_subcommand(
       "plot", "Draw a run, several runs over each other, or what converge, study and bench measured");
@@ -52,7 +52,7 @@ void add_plot(CLI::App& app, int& code) {
   command->footer(
       "Writes .png and .svg.\n"
       "Example: ilaw plot results\n         ilaw plot results/* --y glue.F2,n50.u2");
-  command->callback([options, &code] { code = plot(*options); });
+  command->callback([options] { plot(*options); });
 }
 
 }  // namespace ilaw::host

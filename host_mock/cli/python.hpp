@@ -7,9 +7,9 @@
 
 namespace ilaw::host {
 
-// Runs a module of share/ilaw/python with arguments, in the first Python that has the packages it imports.
-// Gives the exit code; throws if there is none, with the Debian packages to install.
-int run_python(const std::string& module, const std::vector<std::string>& arguments,
-               const std::string& imports, const std::string& debian_packages);
+// Becomes a module of share/ilaw/python with arguments, in the first Python that has the packages it imports.
+// Throws if there is none, with the Debian packages to install.
+[[noreturn]] void run_python(const std::string& module, const std::vector<std::string>& arguments,
+                             const std::string& imports, const std::string& debian_packages);
 
 }  // namespace ilaw::host

@@ -31,7 +31,6 @@
 #include <memory>
 #include <optional>
 #include <regex>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -153,38 +152,36 @@ class Run {
     remove_files(std::string(written_at_once) + "\\.partial");  // those that a killed run was writing
     fields_.resume(checkpoint.fields);
     record.resumed_at = checkpoint_step_ = integrator_.steps();
-    const bool goes_on =
-        same_columns(checkpoint.output, scene_.source.value("output", nlohmann::json::object()));
+    const bool goes_on = history_.continues(checkpoint.history_state);
     resume_history(checkpoint, goes_on);
     resume_events(checkpoint);
     if (!goes_on) write_checkpoint_now();  // the one before it goes on from rows with other columns
   }
 
-  // With other columns a history of its own begins, beside the one that there is.
+  // With other columns a history of its own begins, beside the one that there is. Its sums go on.
   void resume_history(const Checkpoint& checkpoint, bool goes_on) {
     const std::filesystem::path file = options_.folder / "history.csv";
-    if (!goes_on) {
+    if (goes_on) {
+      history_.open(options_.folder, checkpoint.history);
+    } else {
       AtomicFile(file, checkpoint.history).commit();
       std::filesystem::rename(
           file, options_.folder / ("history.until_step_" + std::to_string(integrator_.steps()) + ".csv"));
-      return history_.open(options_.folder);
+      history_.open(options_.folder);
     }
-    history_.open(options_.folder, checkpoint.history);
-    std::istringstream state(checkpoint.history_state);
-    history_.load(state);
+    history_.load(checkpoint.history_state, integrator_.steps());
+    for (const std::string& late : history_.late_sums()) scene_.warnings.push_back(late);
   }
 
   // Events written before the resume are kept.
   void resume_events(const Checkpoint& checkpoint) {
     const bool had_events = checkpoint.events.size > 0;
-    if (had_events && scene_.output.events) {
-      std::istringstream state(checkpoint.events_state);
-      events_.emplace(scene_, options_.folder, checkpoint.events).load(state);
-    } else if (had_events) {
+    if (had_events && scene_.output.events)
+      events_.emplace(scene_, options_.folder, checkpoint.events).load(checkpoint.events_state);
+    else if (had_events)
       AtomicFile(options_.folder / "events.csv", checkpoint.events).commit();
-    } else if (scene_.output.events) {
+    else if (scene_.output.events)
       events_.emplace(scene_, options_.folder);
-    }
   }
 
   void start() {
@@ -289,12 +286,9 @@ class Run {
   }
 
   void write_checkpoint_now() {
-    std::ostringstream history, events;
-    history_.save(history);
-    if (events_) events_->save(events);
     write_checkpoint(scene_, integrator_,
-                     {history_.flush(), fields_.written(), history.str(),
-                      events_ ? events_->flush() : FileMark{}, events.str()},
+                     {history_.flush(), fields_.written(), history_.state(),
+                      events_ ? events_->flush() : FileMark{}, events_ ? events_->state() : nlohmann::json()},
                      options_.folder);
     checkpoint_step_ = integrator_.steps();
   }

@@ -14,16 +14,16 @@ struct ViewOptions {
   double megabytes = 50.0;
 };
 
-int view(const ViewOptions& options) {
+void view(const ViewOptions& options) {
   std::vector<std::string> arguments = {"--megabytes", text_of("%.17g", options.megabytes)};
   if (!options.out.empty()) arguments.push_back("--out=" + options.out);
   arguments.insert(arguments.end(), {"--", options.folder});
-  return run_python("ilaw.view", arguments, "numpy, vtkmodules.vtkIOXML", "python3-numpy python3-vtk9");
+  run_python("ilaw.view", arguments, "numpy, vtkmodules.vtkIOXML", "python3-numpy python3-vtk9");
 }
 
 }  // namespace
 
-void add_view(CLI::App& app, int& code) {
+void add_view(CLI::App& app, int& /*code*/) {
   const auto options = std::make_shared<ViewOptions>();
   CLI::App* command = app.add_subcommand(
       "view", "Write a run as one HTML file: bodies in motion, fields, forces, curves, events");
@@ -37,7 +37,7 @@ void add_view(CLI::App& app, int& code) {
   command->footer(
       "The file opens in any browser and needs no network.\n"
       "Example: ilaw view results -o run.html");
-  command->callback([options, &code] { code = view(*options); });
+  command->callback([options] { view(*options); });
 }
 
 }  // namespace ilaw::host

@@ -1,4 +1,5 @@
-// A law that gives no impulse, and breaks one promise: the one that ILAW_BROKEN names.
+// A law that gives no impulse, and breaks one promise: the one that ILAW_BROKEN names. With `bare` it breaks
+// none: it stops what comes, and gives wear, but neither status nor energy.
 #define ILAW_BUILDING_PLUGIN
 #include <ilaw/ilaw.h>
 
@@ -45,11 +46,16 @@ std::int32_t create(const char*, const ilaw_setup*, ilaw_instance** instance, ch
 
 void destroy(ilaw_instance*) {}
 
+constexpr ilaw_amount wear{sizeof wear, 0, "wear", "m", ""};
+constexpr const ilaw_amount* amounts[] = {&wear};
+
 std::int32_t info(const ilaw_instance*, ilaw_instance_info* out) {
   const std::uint32_t size = out->struct_size;
   std::memset(out, 0, size);
   out->struct_size = size;
   out->inputs = ILAW_INPUT_GAP;
+  out->amounts = amounts;
+  out->amount_count = breaks("bare") ? 1 : 0;
   return ILAW_OK;
 }
 
@@ -110,7 +116,19 @@ double false_energy(const ilaw_batch& batch) {
   return breaks("other_energy") && batch.time >= 2.9 && ++calls % 2 == 0 ? 1.0 : 0.0;
 }
 
+std::int32_t evaluate_bare(const ilaw_batch& batch) {
+  for (std::int64_t i = 0; i < batch.node_count; ++i) {
+    const std::int64_t node = node_of(batch, i);
+    const double impulse = stop(batch, node);
+    batch.impulse.values[node * batch.impulse.node_stride] = impulse;
+    if (batch.amounts && batch.amounts[0].values)
+      batch.amounts[0].values[node * batch.amounts[0].node_stride] = impulse > 0.0 ? 0.25 : 0.0;
+  }
+  return ILAW_OK;
+}
+
 std::int32_t evaluate(const ilaw_instance*, const ilaw_batch* batch, ilaw_report* report) {
+  if (breaks("bare")) return evaluate_bare(*batch);
   for (std::int64_t i = 0; i < batch->node_count; ++i) {
     const std::int64_t node = node_of(*batch, i);
     batch->impulse.values[node * batch->impulse.node_stride] = false_impulse(*batch, node);
@@ -146,7 +164,9 @@ ilaw_law law() {
   made.frames = ILAW_FRAME_LOCAL | ILAW_FRAME_GLOBAL;
   made.numbers = ILAW_NUMBERS_DOUBLE;
   made.inputs = ILAW_INPUT_GAP;
-  made.outputs = ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY;
+  made.outputs = breaks("bare") ? 0 : ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY;
+  made.amounts = amounts;
+  made.amount_count = breaks("bare") ? 1 : 0;
   made.id = "broken";
   made.title = "Breaks a promise";
   made.doc = "";

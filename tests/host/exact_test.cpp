@@ -160,7 +160,7 @@ TEST(InitialDisplacement, IsLinearAlongTheBar) {
     source.erase("exact");
     source["loads"] = json::array();
     source["model"]["bars"][0]["elements"] = 7;
-    source["model"]["bars"][0]["initial_displacement"] = {a, b};
+    source["initial"] = {{{"displacement", {a}}, {"gradient", {{b - a}}}}};
     source["interfaces"] = json::array();
     auto [scene, integrator] = simulation_of(source);
     const double half_mass = 0.5 / 7.0, kick = 0.5 * scene.dt * (b - a) / half_mass;
@@ -176,7 +176,7 @@ TEST(InitialDisplacement, IsLinearAlongTheBar) {
 
 TEST(InitialDisplacement, IntoAnObstacleIsWarnedOf) {
   json scene = shipped("held_rod");
-  scene["model"]["bars"][0]["initial_displacement"] = {-0.25, 0.0};
+  scene["initial"] = {{{"displacement", {-0.25}}, {"gradient", {{0.25}}}}};
   scene.erase("exact");
   EXPECT_THAT(scene_of(scene).warnings,
               ElementsAre("/interfaces/0: 1 node(s) start inside the obstacle, node 0 by 0.25"));

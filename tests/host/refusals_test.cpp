@@ -130,7 +130,7 @@ TEST(Warnings, TellOfElementsThatLock) {
 
 TEST(Warnings, AreNotForTheShippedScenes) {
   for (const fs::path& file : scene_files::all()) {
-    std::vector<std::string> warnings = scene_of(text_of(file)).warnings;
+    std::vector<std::string> warnings = read_scene(file).warnings;
     // A square bar glued to an oblique plane: two of its corners are off it.
     if (file.filename() == "mixed_mode_bar.json")
       std::erase_if(warnings, [](const auto& text) { return text.find("open gap") != std::string::npos; });

@@ -1,6 +1,8 @@
 // A run that goes on from a checkpoint may have another end, another title and another output.
 #include "host_runner.hpp"
 
+#include "base/csv.hpp"
+
 namespace ilaw::host::testing {
 namespace {
 
@@ -67,6 +69,54 @@ TEST(Resume, GoesOnWithOtherColumns) {
   EXPECT_THAT(text_of(folder / "events.csv"), HasSubstr("rupture"));
   ASSERT_EQ(run_program("run " + written(scene, folder) + out).code, 0);
   EXPECT_FALSE(fs::exists(folder / "history.until_step_500.csv"));
+}
+
+// Sums go on when columns change, but not those that nobody asked for before, of which a warning tells in
+// this run and in those that go on from it.
+TEST(Resume, KeepsSumsWithOtherColumns) {
+  json scene = json::parse(R"({"model": {"type": "points", "dimension": 2, "points": [
+      {"mass": 2, "position": [0, 0], "velocity": [2, 0], "area": 0.01},
+      {"mass": 1, "position": [1, 0], "velocity": [1, 0], "area": 0.01}]},
+    "time": {"dt": 1e-3, "end": 0.25}, "loads": [{"type": "gravity", "acceleration": [0, -10]}],
+    "interfaces": [{"name": "floor", "law": "coulomb", "nodes": "all",
+      "parameters": {"friction": 0.4, "wear_coefficient": 1e-6},
+      "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}}]})");
+  const json narrow = {
+      {"every", 100}, {"watch", {0}}, {"contact", true}, {"forces", {{{"of", "floor"}, {"about", {0, 0}}}}}};
+  json wide = narrow;
+  wide["watch"] = {0, 1};
+  wide["balance"] = true;
+  scene["output"] = wide;
+  scene["time"]["end"] = 0.6;
+  const std::string all_rows = in_one_go(scene);
+  scene["output"] = narrow;
+  scene["time"]["end"] = 0.25;
+  const auto folder = fresh_folder();
+  const std::string out = " --out " + folder.string() + " --checkpoint-every 1000";
+  ASSERT_EQ(run_program("run " + written(scene, folder) + out).code, 0);
+  scene["output"] = wide;
+  for (const double end : {0.4, 0.6}) {
+    scene["time"]["end"] = end;
+    EXPECT_THAT(run_program("run " + written(scene, folder) + out + " --resume"),
+                Exits(0, HasSubstr("n1.slip_length, n1.wear_depth: summed from step 250 only")));
+  }
+  const auto last = [](const std::string& rows) {
+    const std::size_t begin = rows.rfind('\n', rows.size() - 2) + 1;
+    return csv_cells(rows.substr(begin, rows.size() - 1 - begin));
+  };
+  const std::vector<std::string> found = last(text_of(folder / "history.csv")), whole = last(all_rows);
+  const std::string rows = text_of(folder / "history.csv");
+  const std::vector<std::string> names = csv_cells(rows.substr(0, rows.find('\n')));
+  ASSERT_EQ(found.size(), names.size());
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (names[k] == "n1.slip_length" || names[k] == "n1.wear_depth")
+      EXPECT_NE(found[k], whole[k]) << names[k];
+    else
+      EXPECT_EQ(found[k], whole[k]) << names[k];
+  // 24 N.s up and, to the left, what both lost of their velocity.
+  const json impulse = json_of(folder / "summary.json")["forces"]["floor"]["impulse"];
+  EXPECT_NEAR(impulse[0], -5.0, 1e-9);
+  EXPECT_NEAR(impulse[1], 18.0 + 0.015, 1e-9);
 }
 
 }  // namespace

@@ -35,6 +35,32 @@ json sliding() {
     "output": {"watch": [0], "forces": ["floor"], "every": 10}})");
 }
 
+// A law without statuses and energies: what it wears off, and how hard it pushes, is told all the same, alone
+// and beside an interface that shares the node.
+TEST(History, TellsOfContactsOfABareLaw) {
+  json scene = json::parse(R"({"model": {"type": "points", "dimension": 1, "points": [
+      {"mass": 2, "position": [0], "velocity": [-1], "area": 0.5}]}, "time": {"dt": 0.5, "end": 2},
+    "loads": [{"type": "gravity", "acceleration": [-10]}],
+    "interfaces": [{"name": "floor", "law": "broken", "nodes": "all",
+                    "obstacle": {"type": "plane", "point": [0], "normal": [1]}}],
+    "output": {"watch": [0], "contact": true, "events": true}})");
+  scene["interfaces"][0]["library"] = ILAW_BROKEN_LAW;
+  for (const std::string prefix : {"n0.", "n0.floor."}) {
+    const auto folder = fresh_folder();
+    ASSERT_EQ(run_scene(scene, folder, "", "ILAW_BROKEN=bare ").code, 0);
+    const auto rows = rows_of(text_of(folder / "history.csv"));
+    ASSERT_EQ(rows.size(), 5U);
+    EXPECT_EQ(cell(rows, 4, prefix + "pressure"), "40");  // m g/A
+    EXPECT_EQ(cell(rows, 4, prefix + "status"), "1");
+    EXPECT_EQ(cell(rows, 4, prefix + "wear_depth"), "1.25");  // of four steps and the start
+    EXPECT_EQ(json_of(folder / "summary.json")["status_counts"]["closed"], 4);
+    EXPECT_THAT(text_of(folder / "events.csv"), HasSubstr("0,0,floor,contact,"));
+    scene["interfaces"].push_back(scene["interfaces"][0]);
+    scene["interfaces"][1]["name"] = "other";
+    scene["interfaces"][1]["obstacle"]["point"] = {-1};
+  }
+}
+
 // Readers of meshes are processes, and so are the runs.
 TEST(Sweep, ReadsMeshesInEachOfItsProcesses) {
   const auto folder = fresh_folder();

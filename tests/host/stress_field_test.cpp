@@ -52,7 +52,7 @@ TEST(Stress, OfAHomogeneousDeformationIsTheClosedForm) {
 TEST(Stress, OfABarIsItsTension) {
   const Scene scene =
       scene_of(R"({"model": {"type": "bars", "bars": [{"length": 2, "elements": 4, "young": 3e6, "density": 1,
-      "section": 0.5, "initial_displacement": [0, 0.01]}]}, "time": {"cfl": 0.5, "end": 1e-3}, "interfaces": []})");
+      "section": 0.5}]}, "initial": [{"gradient": [[0.005]]}], "time": {"cfl": 0.5, "end": 1e-3}, "interfaces": []})");
   for (const Eigen::Matrix3d& stress : scene.model->stresses(scene.model->initial_displacement())) {
     EXPECT_NEAR(stress(0, 0), 3e6 * 0.005, 1e-8);
     EXPECT_EQ(stress.cwiseAbs().sum(), stress(0, 0));

@@ -116,24 +116,29 @@ TEST(Clock, StepsThatAreTimedStandForThoseThatAreNot) {
 // A phase far longer than those of small scenes was interrupted, and is no measure of the others.
 TEST(Clock, AnInterruptionStandsForItself) {
   constexpr int weight = 16;
-  const std::int64_t begin = ticks_now();
+  constexpr double interrupted = 5e-4;
+  const auto now = [] { return clock_seconds(CLOCK_MONOTONIC); };
+  const double begin = now();
   Laps laps(weight);
-  while (ticks_now() - begin < 1 << 20) continue;
-  std::int64_t ticks = 0;
-  laps.add_to(ticks);
-  EXPECT_GT(ticks, 1 << 19);
-  EXPECT_LE(ticks, ticks_now() - begin);
+  while (now() - begin < interrupted) continue;
+  double seconds = 0.0;
+  laps.add_to(seconds);
+  EXPECT_GT(seconds, 0.9 * interrupted);
+  EXPECT_LE(seconds, now() - begin);
   int weighted = 0;
   for (int k = 0; k < 100; ++k) {
-    ticks = 0;
-    laps.add_to(ticks);
-    weighted += ticks > 0 && ticks % weight == 0 ? 1 : 0;
+    double passed = 0.0;
+    const double start = now();
+    laps.add_to(passed);
+    while (now() - start < 1e-6) continue;
+    laps.add_to(passed);
+    weighted += passed > 2.0 * (now() - start) ? 1 : 0;
   }
   EXPECT_GT(weighted, 90);
   Laps untimed(0);
-  ticks = 0;
-  untimed.add_to(ticks);
-  EXPECT_EQ(ticks, 0);
+  seconds = 0.0;
+  untimed.add_to(seconds);
+  EXPECT_EQ(seconds, 0.0);
 }
 
 // Contacts that share nodes: how many sweeps, and what the last one still changed.

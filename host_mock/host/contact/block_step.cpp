@@ -64,7 +64,7 @@ class BlockWalk {
         moves_(obstacle_ != Components{}),
         moved_(obstacle_before_ != Components{}),
         stands_still_(!Turns && !moves_ && !moved_) {
-    columns.use(step.law, D, {step.gets_energies, step.gets_energies}, block_size);
+    columns.use(step.law, D, {step.gets_energies, step.gets_amounts}, block_size);
   }
 
   void solve(const Block& block, ChunkOutcome& outcome) {
@@ -79,6 +79,7 @@ class BlockWalk {
     if constexpr (Turns) turn_states();
     const ilaw_batch batch = make_batch();
     if (!accept(step_.law.evaluate(batch), outcome)) return;
+    columns_.complete_statuses();
     mark_touched(batch, count_statuses(outcome.sums));
     apply(outcome.sums);
     add_dissipation(outcome.sums);
@@ -197,7 +198,8 @@ class BlockWalk {
         empty_batch(step_.obstacle.tangent(), step_.step.time, step_.step.velocity_step(), step_.step.dt);
     columns_.fill(batch);
     batch.v_free = relative(step_.v, obstacle_, moves_, turn_after_, v_free_);
-    if ((info.inputs | (step_.gets_energies ? info.balance_inputs : 0U)) & ILAW_INPUT_V_PREVIOUS)
+    if ((info.inputs | (step_.gets_energies || step_.gets_amounts ? info.balance_inputs : 0U)) &
+        ILAW_INPUT_V_PREVIOUS)
       batch.v_previous = relative(step_.step.v_before, obstacle_before_, moved_, turn_before_, v_previous_);
     batch.delassus = ilaw::input(columns_.delassus(), 1, 0);
     batch.gap = ilaw::input(gap_.data(), 1, 0);

@@ -24,7 +24,7 @@ struct BlockStep {
   const ObstacleMotion& obstacle;
   const std::vector<std::size_t>& axes;  // where they begin in the state
   Dofs& v;                               // v_free, then what the impulses make of it
-  bool gets_energies;
+  bool gets_energies, gets_amounts;
   ContactHeat* heat;  // null: no temperatures
   bool one_by_one;    // each contact is gathered alone: same bits, more work
 };

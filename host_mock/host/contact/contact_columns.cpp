@@ -48,8 +48,6 @@ void ContactColumns::take(ContactArrays& at, const std::int32_t* contacts, std::
   area_ = column(at.area, area_room_);
   impulse_ = in_place.arrays ? &at.impulse[contact(0) * dimension_] : impulse_room_;
   status_ = in_place.arrays ? &at.status[contact(0)] : statuses_.data();
-  // A law without this output leaves the contacts free.
-  if (!in_place.arrays && !gives_status_) std::fill_n(status_, count, std::uint8_t{ILAW_FREE});
   read_parameters();
   state_stride_ = in_place.states ? static_cast<std::size_t>(at.state.stride()) : stride_;
   state_ = in_place.states ? at.state.first(contact(0)) : state_room_;
@@ -86,6 +84,15 @@ std::array<double, ILAW_ENERGY_COUNT> ContactColumns::energies(std::ptrdiff_t i)
   std::array<double, ILAW_ENERGY_COUNT> energies{};
   for (std::size_t k = 0; energies_ && k < energies.size(); ++k) energies[k] = energy(k)[i];
   return energies;
+}
+
+void ContactColumns::complete_statuses() const {
+  if (gives_status_) return;
+  for (std::ptrdiff_t i = 0; i < count_; ++i) {
+    const double* const r = impulse_ + static_cast<std::ptrdiff_t>(dimension_) * i;
+    const bool acts = std::any_of(r, r + dimension_, [](double part) { return part != 0.0; });
+    status_[i] = acts ? ILAW_CLOSED : ILAW_FREE;
+  }
 }
 
 void ContactColumns::give_heat(ContactHeat& heat) const {

@@ -44,6 +44,8 @@ class ContactColumns {
   }
 
   // ---- after the law ----
+  // A law without statuses leaves the contacts free that it gives no impulse; the others are closed.
+  void complete_statuses() const;
   void give_heat(ContactHeat& heat) const;
   // Adds them up, and keeps the wear of each contact if that is asked for.
   void sum_amounts(ContactSums& sums) const;

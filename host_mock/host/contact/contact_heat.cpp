@@ -8,8 +8,7 @@
 
 namespace ilaw::host {
 
-ContactHeat::ContactHeat(const ilaw_instance_info& info, bool gives_amounts,
-                         std::optional<Table> obstacle_temperature)
+ContactHeat::ContactHeat(const ilaw_instance_info& info, std::optional<Table> obstacle_temperature)
     : obstacle_(std::move(obstacle_temperature)) {
   constexpr std::array<std::string_view, 3> amount_names{"heat", "counterpart_heat", "heat_per_kelvin"};
   inputs_.fill(-1);
@@ -17,7 +16,7 @@ ContactHeat::ContactHeat(const ilaw_instance_info& info, bool gives_amounts,
   for (std::uint32_t p = 0; p < info.per_node_parameter_count; ++p)
     for (std::size_t k = 0; k < inputs_.size(); ++k)
       if (std::string_view(info.per_node_parameters[p]) == field_names[k]) inputs_[k] = static_cast<int>(p);
-  for (std::uint32_t a = 0; gives_amounts && a < info.amount_count; ++a)
+  for (std::uint32_t a = 0; a < info.amount_count; ++a)
     for (std::size_t k = 0; k < amounts_.size(); ++k)
       if (std::string_view(info.amounts[a]->name) == amount_names[k]) amounts_[k] = static_cast<int>(a);
   for (std::uint32_t a = 0; a < info.amount_count; ++a)

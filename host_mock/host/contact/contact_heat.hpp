@@ -22,8 +22,7 @@ class ContactHeat {
   static constexpr std::array field_names{"temperature", "counterpart_temperature", "heat_capacity",
                                           "counterpart_heat_capacity"};
 
-  // gives_amounts: whether the host asks the law for them.
-  ContactHeat(const ilaw_instance_info& info, bool gives_amounts, std::optional<Table> obstacle_temperature);
+  ContactHeat(const ilaw_instance_info& info, std::optional<Table> obstacle_temperature);
 
   // Per node of the model; the arrays must stay.
   void read(const double* temperature, const double* capacity) {

@@ -25,7 +25,10 @@ class CoupledInterface {
   // act: the others are out of reach of the speeds of the step.
   const ilaw_contacts& open(const StepView& step);
   // Takes the impulses that were found.
-  void take() { columns().scatter_results(); }
+  void take() {
+    columns().complete_statuses();
+    columns().scatter_results();
+  }
   // Throws as Interface::solve(), given the first contact with bad input (place in the group; -1: none).
   void check(const ilaw_coupled_report& report, std::int64_t bad_contact, double dt) const;
   // Throws as Interface::solve(), what ended the whole solve.

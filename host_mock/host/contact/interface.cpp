@@ -38,8 +38,7 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
       search_(setup_, law_, contacts_),
       obstacle_(setup_, dimension_),
       amounts_(law_.info().amount_count) {
-  if (setup_.heat)
-    heat_.emplace(law_.info(), (law_.outputs() & ILAW_OUTPUT_ENERGY) != 0, setup_.heat->obstacle_temperature);
+  if (setup_.heat) heat_.emplace(law_.info(), setup_.heat->obstacle_temperature);
 }
 
 // With what of the node limits the step, where equations have more than one solution.
@@ -124,8 +123,9 @@ void Interface::solve(const StepView& step, Dofs& v) {
     sums_.clear();
     return;
   }
-  const BlockStep blocks{setup_, model_, inverse_mass_,    law_,   contacts_,  step, obstacle_,
-                         axes_,  v,      gives_energies(), heat(), one_by_one_};
+  const BlockStep blocks{
+      setup_, model_,           inverse_mass_,           law_,   contacts_,  step, obstacle_, axes_,
+      v,      gives_energies(), asks_energies_ || heat_, heat(), one_by_one_};
   const ChunkStep step_chunk = chunk_step_of(blocks);
   outcomes_.resize(static_cast<std::size_t>(search_.chunk_count()));
   for_each_chunk(search_.chunk_count(), 1, [&](std::ptrdiff_t c, auto, auto) {

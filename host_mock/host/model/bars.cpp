@@ -14,11 +14,8 @@ void add_bar(const BarSetup& bar, Nodes& nodes, Eigen::Index first) {
   nodes.mass.segment(first, bar.elements + 1).setConstant(element_mass);
   nodes.mass[first] = nodes.mass[first + bar.elements] = 0.5 * element_mass;
   nodes.velocity.segment(first, bar.elements + 1).setConstant(bar.velocity);
-  const double stretch = bar.displacement[1] - bar.displacement[0];
-  for (int k = 0; k <= bar.elements; ++k) {
+  for (int k = 0; k <= bar.elements; ++k)
     nodes.position[first + k] = bar.start + bar.length * k / bar.elements;
-    nodes.displacement[first + k] = bar.displacement[0] + stretch * k / bar.elements;
-  }
   const int left = static_cast<int>(first), right = left + bar.elements;
   NodeSet& whole = nodes.sets[bar.name];
   whole.nodes.resize(static_cast<std::size_t>(bar.elements) + 1);
@@ -34,7 +31,7 @@ void add_bar(const BarSetup& bar, Nodes& nodes, Eigen::Index first) {
 Nodes nodes_of(const std::vector<BarSetup>& bars) {
   Eigen::Index count = 0;
   for (const BarSetup& bar : bars) count += bar.elements + 1;
-  Nodes nodes{1, Dofs(count), Dofs(count), Dofs(count), {}, Dofs(count)};
+  Nodes nodes{1, Dofs(count), Dofs(count), Dofs(count), {}};
   Eigen::Index first = 0;
   for (const BarSetup& bar : bars) {
     add_bar(bar, nodes, first);

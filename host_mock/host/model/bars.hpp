@@ -4,7 +4,6 @@
 
 #include "model/model.hpp"
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -15,7 +14,6 @@ struct BarSetup {
   double start, length;  // from start to start + length
   int elements;
   double young, density, section, velocity;
-  std::array<double, 2> displacement;  // of its ends at the start, linear between them
 };
 
 // Sets of bar "b": "b", "b.left", "b.right".

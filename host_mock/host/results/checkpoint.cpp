@@ -22,7 +22,7 @@ json identity_of(const Scene& scene) {
                     {"version", interface->library().plugin().version},
                     {"state_size", interface->info().state_size},
                     {"state_version", interface->info().state_version}});
-  return {{"format", "ilaw checkpoint 8"},
+  return {{"format", "ilaw checkpoint 9"},
           {"program", ILAW_VERSION},
           {"scene", scene.source},
           {"laws", laws},
@@ -108,9 +108,9 @@ void write_checkpoint(const Scene& scene, const Integrator& integrator, const Ch
   integrator.save(state);
   const json content = {{"identity", identity_of(scene)},
                         {"history", as_json(checkpoint.history)},
-                        {"history_state", binary_of(checkpoint.history_state)},
+                        {"history_state", checkpoint.history_state},
                         {"events", as_json(checkpoint.events)},
-                        {"events_state", binary_of(checkpoint.events_state)},
+                        {"events_state", checkpoint.events_state},
                         {"fields", checkpoint.fields},
                         {"state", binary_of(state.str())}};
   Bytes packed = json::to_cbor(content);
@@ -135,10 +135,8 @@ Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std
   Checkpoint checkpoint;
   try {
     check_identity(content["identity"], identity_of(scene));
-    checkpoint = {
-        mark_of(content.at("history")),       content.at("fields"),
-        text_of(content.at("history_state")), mark_of(content.at("events")),
-        text_of(content.at("events_state")),  content["identity"]["scene"].value("output", json::object())};
+    checkpoint = {mark_of(content.at("history")), content.at("fields"), content.at("history_state"),
+                  mark_of(content.at("events")), content.at("events_state")};
     std::istringstream state(text_of(content.at("state")));
     integrator.load(state);
     if (integrator.steps() > scene.steps)

@@ -13,12 +13,11 @@
 namespace ilaw::host {
 
 struct Checkpoint {
-  FileMark history;                // what of history.csv belongs to it
-  nlohmann::json fields;           // files written so far, and what is in them
-  std::string history_state = {};  // what its next row depends on
-  FileMark events = {};            // what of events.csv belongs to it
-  std::string events_state = {};   // what the next events depend on
-  nlohmann::json output = {};      // what the scene asked for, when it was written
+  FileMark history;                   // what of history.csv belongs to it
+  nlohmann::json fields;              // files written so far, and what is in them
+  nlohmann::json history_state = {};  // what its next row depends on
+  FileMark events = {};               // what of events.csv belongs to it
+  nlohmann::json events_state = {};   // what the next events depend on
 };
 
 // Replaces folder/checkpoint.cbor, whole or not at all.

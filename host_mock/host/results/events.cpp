@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "results/events.hpp"
 
-#include "base/bytes.hpp"
-
 #include <array>
 #include <string>
 
@@ -63,15 +61,6 @@ void Events::add_row(double time, int node, const Interface& interface, const ch
   table_ << time << node << interface.name() << event;
   for (int c = 0; c < scene_.model->dimension(); ++c) table_ << impulse[c];
   table_.end_row();
-}
-
-void Events::save(std::ostream& out) const {
-  for (const std::vector<int>& nodes : touching_) write_sized(out, nodes);
-}
-
-void Events::load(std::istream& in) {
-  for (std::size_t i = 0; i < touching_.size(); ++i)
-    touching_[i] = read_sized<int>(in, scene_.interfaces[i]->nodes().size());
 }
 
 }  // namespace ilaw::host

@@ -9,7 +9,6 @@
 #include "step/integrator.hpp"
 
 #include <filesystem>
-#include <iosfwd>
 #include <optional>
 #include <vector>
 
@@ -28,9 +27,9 @@ class Events {
   void commit() { file_.commit(); }
   void keep_rows() { file_.keep_lines(); }
 
-  // Which nodes touch: the checkpoint takes it along.
-  void save(std::ostream& out) const;
-  void load(std::istream& in);
+  // Which nodes touch, for the checkpoint.
+  nlohmann::json state() const { return touching_; }
+  void load(const nlohmann::json& state) { state.get_to(touching_); }
 
  private:
   void add_interface(std::size_t number, const Integrator& integrator);

@@ -3,11 +3,24 @@
 
 #include "base/bytes.hpp"
 
+#include <algorithm>
 #include <array>
-#include <string>
 #include <utility>
 
 namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+std::vector<double> list_of(const Dofs& values) { return {values.begin(), values.end()}; }
+
+void read(const json& list, Dofs& values) {
+  const auto found = list.get<std::vector<double>>();
+  if (found.size() != static_cast<std::size_t>(values.size())) refuse_damaged();
+  std::copy(found.begin(), found.end(), values.begin());
+}
+
+}  // namespace
 
 Forces::Forces(const Scene& scene, Integrator& integrator) : scene_(scene) {
   const int d = scene.model->dimension();
@@ -32,10 +45,10 @@ void Forces::add_start(const Integrator& integrator) {
 }
 
 void Forces::add_step(const Integrator& integrator) {
-  if (sums_.empty()) return;
-  for (std::size_t k = 0; k < sums_.size(); ++k)
+  for (std::size_t k = 0; k < sums_.size(); ++k) {
     add(scene_.output.forces[k], sums_[k], integrator, scene_.dt);
-  ++steps_;
+    ++sums_[k].steps;
+  }
 }
 
 void Forces::add(const ForceSetup& force, Resultant& sum, const Integrator& integrator, double duration) {
@@ -93,8 +106,8 @@ void Forces::add_names(std::vector<std::string>& names) const {
 }
 
 void Forces::write_row(CsvWriter& table, double time) {
-  const double duration = static_cast<double>(steps_) * scene_.dt;
   for (Resultant& sum : sums_) {
+    const double duration = static_cast<double>(sum.steps) * scene_.dt;
     for (const double impulse : sum.impulse) table << impulse / duration;
     for (const double moment : sum.moment) table << moment / duration;
     if (const double force = sum.impulse.norm() / duration; force > sum.largest) {
@@ -104,39 +117,67 @@ void Forces::write_row(CsvWriter& table, double time) {
     sum.total += sum.impulse;
     sum.impulse.setZero();
     sum.moment.setZero();
+    sum.steps = 0;
   }
-  steps_ = 0;
 }
 
-nlohmann::json Forces::summary() const {
-  nlohmann::json all = nlohmann::json::object();
+json Forces::about(std::size_t k) const {
+  const std::optional<Vector>& point = scene_.output.forces[k].about;
+  return point ? json(list_of(*point)) : json();
+}
+
+json Forces::points() const {
+  json all = json::array();
+  for (std::size_t k = 0; k < sums_.size(); ++k) all.push_back(about(k));
+  return all;
+}
+
+json Forces::summary() const {
+  json all = json::object();
   for (std::size_t k = 0; k < sums_.size(); ++k) {
-    const Dofs impulse = sums_[k].total + sums_[k].impulse;
-    all[scene_.output.forces[k].name] = {{"impulse", std::vector<double>(impulse.begin(), impulse.end())},
+    all[scene_.output.forces[k].name] = {{"impulse", list_of(sums_[k].total + sums_[k].impulse)},
                                          {"largest", sums_[k].largest},
                                          {"largest_at", sums_[k].largest_at}};
   }
   return all;
 }
 
-void Forces::save(std::ostream& out) const {
-  write_value(out, steps_);
-  for (const Resultant& sum : sums_) {
-    for (const Dofs* part : {&sum.impulse, &sum.moment, &sum.total})
-      write_array(out, part->data(), static_cast<std::size_t>(part->size()));
-    write_value(out, sum.largest);
-    write_value(out, sum.largest_at);
+json Forces::state() const {
+  json all = json::object();
+  for (std::size_t k = 0; k < sums_.size(); ++k) {
+    const Resultant& sum = sums_[k];
+    all[scene_.output.forces[k].name] = {
+        {"about", about(k)},           {"impulse", list_of(sum.impulse)}, {"moment", list_of(sum.moment)},
+        {"total", list_of(sum.total)}, {"largest", sum.largest},          {"largest_at", sum.largest_at},
+        {"steps", sum.steps}};
   }
+  return all;
 }
 
-void Forces::load(std::istream& in) {
-  read_value(in, steps_);
-  for (Resultant& sum : sums_) {
-    for (Dofs* part : {&sum.impulse, &sum.moment, &sum.total})
-      read_array(in, part->data(), static_cast<std::size_t>(part->size()));
-    read_value(in, sum.largest);
-    read_value(in, sum.largest_at);
+// With a moment about another point the row that was begun is left to the rows before it.
+std::vector<std::string> Forces::load(const json& state) {
+  std::vector<std::string> unknown;
+  for (std::size_t k = 0; k < sums_.size(); ++k) {
+    const std::string& name = scene_.output.forces[k].name;
+    if (!state.contains(name)) {
+      unknown.push_back(name);
+      continue;
+    }
+    Resultant& sum = sums_[k];
+    const json& found = state.at(name);
+    read(found.at("total"), sum.total);
+    found.at("largest").get_to(sum.largest);
+    found.at("largest_at").get_to(sum.largest_at);
+    read(found.at("impulse"), sum.impulse);
+    if (found.at("about") == about(k)) {
+      read(found.at("moment"), sum.moment);
+      found.at("steps").get_to(sum.steps);
+    } else {
+      sum.total += sum.impulse;
+      sum.impulse.setZero();
+    }
   }
+  return unknown;
 }
 
 }  // namespace ilaw::host

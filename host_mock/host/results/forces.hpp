@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
-#include <iosfwd>
+#include <string>
 #include <vector>
 
 namespace ilaw::host {
@@ -32,23 +32,28 @@ class Forces {
   // Per name the impulse of the whole run, and the largest size of the force at the start or in a row.
   nlohmann::json summary() const;
 
-  // The sums so far: the checkpoint takes them along.
-  void save(std::ostream& out) const;
-  void load(std::istream& in);
+  // The points that moments are about, null for forces without one.
+  nlohmann::json points() const;
+  // The sums so far, by name, for the checkpoint.
+  nlohmann::json state() const;
+  // Returns the names that the state has not: their sums begin now.
+  std::vector<std::string> load(const nlohmann::json& state);
 
  private:
   struct Resultant {
     Dofs impulse, moment;                    // since the last row; moment empty where none is asked for
     Dofs total;                              // impulse up to the last row, that of the start included
     double largest = 0.0, largest_at = 0.0;  // size of the force, and the time of its row
+    std::int64_t steps = 0;                  // since the last row
   };
   void add(const ForceSetup& force, Resultant& sum, const Integrator& integrator, double duration);
   void add_at(int node, const double* impulse, const ForceSetup& force, Resultant& sum,
               const Dofs& displacement) const;
 
+  nlohmann::json about(std::size_t k) const;  // null: no moment is asked for
+
   const Scene& scene_;
   std::vector<Resultant> sums_;  // by scene.output.forces
-  std::int64_t steps_ = 0;       // since the last row
   Dofs of_load_;                 // per degree of freedom
 };
 

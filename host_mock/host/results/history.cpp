@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "results/history.hpp"
 
-#include "base/bytes.hpp"
+#include "base/words.hpp"
 
 #include <algorithm>
 #include <string>
@@ -25,12 +25,6 @@ void for_each_state(const ilaw_instance_info& info, Visit visit) {
 }
 
 }  // namespace
-
-bool same_columns(const nlohmann::json& one, const nlohmann::json& other) {
-  for (const char* key : {"watch", "forces", "balance", "contact"})
-    if (one.value(key, nlohmann::json()) != other.value(key, nlohmann::json())) return false;
-  return true;
-}
 
 History::History(const Scene& scene, Integrator& integrator) : scene_(scene), forces_(scene, integrator) {
   find_contacts();
@@ -170,20 +164,30 @@ void History::add_step(const Integrator& integrator) {
   });
 }
 
-void History::save(std::ostream& out) const {
-  forces_.save(out);
+nlohmann::json History::state() const {
+  nlohmann::json sums = nlohmann::json::object();
   for (const std::vector<Contact>& contacts : contacts_)
     for (const Contact& contact : contacts)
-      for (const double value : {contact.last.pressure, contact.last.shear, contact.slip, contact.wear})
-        write_value(out, value);
+      if (scene_.output.contact) sums[contact.prefix] = {contact.slip, contact.wear};
+  return {{"columns", layout()}, {"forces", forces_.state()}, {"contacts", sums}, {"late_sums", late_sums_}};
 }
 
-void History::load(std::istream& in) {
-  forces_.load(in);
+void History::load(const nlohmann::json& state, std::int64_t step) {
+  state.at("late_sums").get_to(late_sums_);
+  std::vector<std::string> unknown = forces_.load(state.at("forces"));
+  const nlohmann::json& sums = state.at("contacts");
   for (std::vector<Contact>& contacts : contacts_)
     for (Contact& contact : contacts)
-      for (double* value : {&contact.last.pressure, &contact.last.shear, &contact.slip, &contact.wear})
-        read_value(in, *value);
+      if (sums.contains(contact.prefix)) {
+        sums.at(contact.prefix).at(0).get_to(contact.slip);
+        sums.at(contact.prefix).at(1).get_to(contact.wear);
+      } else if (scene_.output.contact) {
+        unknown.push_back(contact.prefix + "slip_length");
+        unknown.push_back(contact.prefix + "wear_depth");
+      }
+  if (!unknown.empty())
+    late_sums_.push_back(joined(unknown) + ": summed from step " + std::to_string(step) +
+                         " only, because the run before it did not ask for them");
 }
 
 void History::add_row(const Integrator& integrator) {

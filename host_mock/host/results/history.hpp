@@ -15,9 +15,6 @@
 
 namespace ilaw::host {
 
-// Whether two "output" of a scene have the same columns.
-bool same_columns(const nlohmann::json& one, const nlohmann::json& other);
-
 // history.csv: a row per output instant, columns as in docs/scenes.md. Vectors are in the scene's
 // axes.
 class History {
@@ -36,9 +33,14 @@ class History {
 
   std::vector<std::string> columns() const;
   const Forces& forces() const { return forces_; }
-  // The state beside the integrator on which the next row depends.
-  void save(std::ostream& out) const;
-  void load(std::istream& in);
+  // The state beside the integrator on which the next row depends, by name: a resumed run may have other
+  // columns.
+  nlohmann::json state() const;
+  void load(const nlohmann::json& state, std::int64_t step);
+  // Whether the run that left the state had the same columns.
+  bool continues(const nlohmann::json& state) const { return state.at("columns") == layout(); }
+  // Warnings of sums that do not begin at the start of the run.
+  const std::vector<std::string>& late_sums() const { return late_sums_; }
 
  private:
   // A watched node in one interface.
@@ -55,6 +57,7 @@ class History {
   void find_contacts();
   void find_motions(Integrator& integrator);
   bool has_temperature(int node) const;
+  nlohmann::json layout() const { return {{"names", columns()}, {"points", forces_.points()}}; }
   void add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse);
 
   const Scene& scene_;
@@ -63,6 +66,7 @@ class History {
   std::vector<std::vector<Contact>> contacts_;  // per watched node
   std::vector<bool> is_alone_;                  // per watched node: no interface acts on it
   std::vector<std::size_t> motions_;            // loads that drive a watched node
+  std::vector<std::string> late_sums_;
   Forces forces_;
 };
 

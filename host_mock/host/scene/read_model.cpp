@@ -104,17 +104,6 @@ void check_nodes(double nodes, const json& body, const std::string& pointer) {
                 body["elements"].dump() + formatted(", which makes %.10g nodes", nodes), "at most 5e8");
 }
 
-// Displacements of the ends of a bar, which must keep their order.
-std::array<double, 2> read_end_displacements(const json& bar, const std::string& pointer) {
-  if (!bar.contains("initial_displacement")) return {0.0, 0.0};
-  const json& found = bar["initial_displacement"];
-  const auto ends = found.get<std::array<double, 2>>();
-  if (!(bar["length"].get<double>() + ends[1] - ends[0] > 0.0))
-    throw mistake(pointer + "/initial_displacement", found.dump(),
-                  "displacements that leave the bar a length");
-  return ends;
-}
-
 std::unique_ptr<Model> read_bars(const json& model) {
   std::vector<BarSetup> bars;
   BodyNames names("bar");
@@ -125,8 +114,7 @@ std::unique_ptr<Model> read_bars(const json& model) {
     check_nodes(nodes += bar["elements"].get<double>() + 1.0, bar, pointer);
     bars.push_back({names.next(bar, pointer), bar.value("start", 0.0), bar["length"].get<double>(),
                     bar["elements"].get<int>(), bar["young"].get<double>(), bar["density"].get<double>(),
-                    bar.value("section", 1.0), bar.value("velocity", 0.0),
-                    read_end_displacements(bar, pointer)});
+                    bar.value("section", 1.0), bar.value("velocity", 0.0)});
   }
   check_memory(nodes, 1, "/model/bars");
   return std::make_unique<Bars>(bars);

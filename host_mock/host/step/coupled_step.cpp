@@ -48,7 +48,13 @@ const ilaw_coupled_report& CoupledStep::solve(StepView step, const double* inver
   open(step);
   if (!nodes_.empty()) v_free_ = v;
   for (;;) {
-    solve_groups(step, speed, inverse_mass, v);
+    const ilaw_bodies bodies = gather(step, inverse_mass, v);
+    try {
+      report_ = solver_.solve(bodies, given_, options_of(step, speed));
+    } catch (const ilaw::coupled_error& refused) {
+      refuse(refused);
+    }
+    scatter(step, v);
     if (nodes_.empty()) return report_;
     if (!(report_.message && forget_forces())) {  // else once more, from rest
       const double fastest = largest_speed(v, model_.dimension());
@@ -101,7 +107,19 @@ void CoupledStep::run_on_threads(void*, std::uint32_t threads, ilaw_work_functio
        static_cast<std::uint32_t>(omp_get_num_threads()));
 }
 
-void CoupledStep::solve_groups(const StepView& step, double speed, const double* inverse_mass, Dofs& v) {
+ilaw_coupled_options CoupledStep::options_of(const StepView& step, double speed) const {
+  static const ilaw_threads pool{sizeof pool, 0, nullptr, run_on_threads};
+  ilaw_coupled_options options{};
+  options.most_sweeps = most_sweeps;
+  options.tolerance = tolerance_;
+  options.speed = speed;
+  options.rounding = rounding_of_gaps(step);
+  options.threads = static_cast<std::uint32_t>(omp_get_max_threads());
+  options.pool = &pool;
+  return options;
+}
+
+ilaw_bodies CoupledStep::gather(const StepView& step, const double* inverse_mass, const Dofs& v) {
   const auto d = static_cast<std::size_t>(model_.dimension());
   for (std::vector<double>* values : {&inverse_mass_, &velocity_, &previous_})
     values->resize(d * nodes_.size());
@@ -121,31 +139,26 @@ void CoupledStep::solve_groups(const StepView& step, double speed, const double*
   bodies.v_free = ilaw::input(velocity_.data(), dimension, 1);
   bodies.v_previous = ilaw::input(previous_.data(), dimension, 1);
   bodies.velocity = ilaw::output(velocity_.data(), dimension, 1);
-  ilaw_coupled_options options{};
-  options.most_sweeps = most_sweeps;
-  options.tolerance = tolerance_;
-  options.speed = speed;
-  options.rounding = rounding_of_gaps(step);
-  options.threads = static_cast<std::uint32_t>(omp_get_max_threads());
-  ilaw_threads pool{};
-  pool.struct_size = sizeof pool;
-  pool.run = run_on_threads;
-  options.pool = &pool;
-  try {
-    report_ = solver_.solve(bodies, given_, options);
-  } catch (const ilaw::coupled_error& refused) {
-    if (refused.code() == ILAW_OUT_OF_MEMORY) throw std::bad_alloc();
-    const ilaw_coupled_report& report = refused.report();
-    if (report.bad_group < 0) throw;
-    const CoupledInterface& interface = interfaces_[static_cast<std::size_t>(report.bad_group)];
-    if (report.bad_contact >= 0) interface.refuse_driven(static_cast<std::size_t>(report.bad_contact));
-    interface.refuse(refused.code(), report.reason);
-  }
+  return bodies;
+}
+
+// Throws, what ended a solve.
+void CoupledStep::refuse(const ilaw::coupled_error& refused) const {
+  if (refused.code() == ILAW_OUT_OF_MEMORY) throw std::bad_alloc();
+  const ilaw_coupled_report& report = refused.report();
+  if (report.bad_group < 0) throw;
+  const CoupledInterface& interface = interfaces_[static_cast<std::size_t>(report.bad_group)];
+  if (report.bad_contact >= 0) interface.refuse_driven(static_cast<std::size_t>(report.bad_contact));
+  interface.refuse(refused.code(), report.reason);
+}
+
+void CoupledStep::scatter(const StepView& step, Dofs& v) {
   for (std::size_t i = 0; i < interfaces_.size(); ++i) {
     const bool is_bad = report_.bad_group == static_cast<std::int64_t>(i);
     interfaces_[i].check(report_, is_bad ? report_.bad_contact : -1, step.dt);
   }
   for (CoupledInterface& interface : interfaces_) interface.take();
+  const auto d = static_cast<std::size_t>(model_.dimension());
   for (std::size_t b = 0; b < nodes_.size(); ++b)
     for (std::size_t c = 0; c < d; ++c)
       v[static_cast<Eigen::Index>(d * static_cast<std::size_t>(nodes_[b]) + c)] = velocity_[d * b + c];

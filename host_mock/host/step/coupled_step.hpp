@@ -51,7 +51,10 @@ class CoupledStep {
   bool forget_forces();
   double rounding_of_gaps(const StepView& step) const;
   static void ILAW_CALL run_on_threads(void*, std::uint32_t threads, ilaw_work_function part, void* work);
-  void solve_groups(const StepView& step, double speed, const double* inverse_mass, Dofs& v);
+  ilaw_coupled_options options_of(const StepView& step, double speed) const;
+  ilaw_bodies gather(const StepView& step, const double* inverse_mass, const Dofs& v);
+  void refuse(const ilaw::coupled_error& refused) const;
+  void scatter(const StepView& step, Dofs& v);
 
   const Model& model_;
   double tolerance_ = default_tolerance;

@@ -63,13 +63,13 @@ void Integrator::step() {
     speed_free = kick(times);  // v_free = v + (h/m) f
   }
   check_motion(speed_free, times.after);  // before the laws see it, too: they must not be blamed
-  laps.add_to(force_ticks_);
+  laps.add_to(seconds_.internal_forces);
   if (!transmits_steadily_ && !interfaces_.empty()) find_contact_mass(times);
   if (temperatures_) temperatures_->conduct(times);  // T_free = T + C^-1 h (q - K T)
   // r = law(v_free, H, gap, state, T_free), v = v_free + H r
   add_reactions({u_, v_before_, times.after, dt_, speed_before_, speed_free, steps_ + 1});
   if (contact_inverse_mass_.size() > 0) add_load_reactions(times);
-  laps.add_to(interface_ticks_);
+  laps.add_to(seconds_.interfaces);
   const WorkAndSpeed external = work_and_speed(external_impulse_, v_before_, v_, model_.dimension());
   speed_before_ = external.speed;
   check_motion(speed_before_, times.after);
@@ -222,7 +222,7 @@ void Integrator::add_load_reactions(StepTimes step) {
 // law that is given no gap or normal, as bodies are gone too far, is not to be blamed.
 void Integrator::add_reactions(const StepView& step) try {
   if (coupled_)
-    add_coupled_reactions(step);
+    accept_solution(step, coupled_->solve(step, contact_inverse_mass(), v_));
   else
     for (const auto& interface : interfaces_) interface->solve(step, v_);
 } catch (const ilaw::error&) {
@@ -233,8 +233,7 @@ void Integrator::add_reactions(const StepView& step) try {
 }
 
 // What ends the run does so before states are accepted.
-void Integrator::add_coupled_reactions(const StepView& step) {
-  const ilaw_coupled_report& solution = coupled_->solve(step, contact_inverse_mass(), v_);
+void Integrator::accept_solution(const StepView& step, const ilaw_coupled_report& solution) {
   coupled_->check_results(step, v_);
   if (solution.other_law || accounts_.is_wrong(model_, solution, v_before_))
     if (const std::string why = coupled_->explain(); !why.empty()) throw std::runtime_error(why);

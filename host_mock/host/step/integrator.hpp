@@ -79,10 +79,7 @@ class Integrator {
   const Temperatures* temperatures() const { return temperatures_ ? &*temperatures_ : nullptr; }
   // Where the start has found an equilibrium, or sought one in vain.
   const std::optional<PrestressReport>& prestressed() const { return prestressed_; }
-  PhaseSeconds seconds() const {
-    const double tick = tick_length_.seconds();
-    return {tick * static_cast<double>(force_ticks_), tick * static_cast<double>(interface_ticks_)};
-  }
+  const PhaseSeconds& seconds() const { return seconds_; }
   const Tally& tally() const { return accounts_.tally(); }
   // By interface, when a contact of it first was not free; infinite: not yet.
   double first_contact(std::size_t interface) const { return accounts_.first_contact(interface); }
@@ -120,7 +117,7 @@ class Integrator {
   void begin_anew();
   void hold_driven_before();
   void add_reactions(const StepView& step);
-  void add_coupled_reactions(const StepView& step);
+  void accept_solution(const StepView& step, const ilaw_coupled_report& solution);
   const double* contact_inverse_mass() const {
     return contact_inverse_mass_.size() > 0 ? contact_inverse_mass_.data() : inverse_mass_.data();
   }
@@ -153,8 +150,7 @@ class Integrator {
   Dofs contact_inverse_mass_;
   Dofs gain_;  // of the velocities in a step, where they do not; empty without loads
   Accounts accounts_;
-  TickLength tick_length_;
-  std::int64_t force_ticks_ = 0, interface_ticks_ = 0;
+  PhaseSeconds seconds_;
 };
 
 }  // namespace ilaw::host

@@ -231,8 +231,9 @@ ExactNode postit_point(const Scene& scene) {
 
 std::vector<ExactNode> exact_solution(const Scene& scene) {
   if (!scene.source.contains("exact")) return {};
-  for (const char* key : {"initial", "springs"})
-    require(!scene.source.contains(key), std::string("a scene without '") + key + "'");
+  require(!scene.source.contains("springs"), "a scene without 'springs'");
+  require(scene.source["exact"]["type"] == "held_rod" || !scene.source.contains("initial"),
+          "a scene without 'initial'");
   for (const json& interface : scene.source["interfaces"])
     for (const char* key : {"rate", "angles"})
       require(!interface.contains("obstacle") || !interface["obstacle"].contains(key),

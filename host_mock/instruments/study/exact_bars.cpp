@@ -158,7 +158,9 @@ ExactNode held_rod(const Scene& scene) {
   const Dofs& start = scene.model->initial_displacement();
   const Eigen::Index right = start.size() - 1;
   const double a = start[0];
-  require(scene.loads[0]->prescribed_nodes()[0] == right && start[right] == 0.0 && a > 0.0, wanted);
+  require(scene.loads[0]->prescribed_nodes()[0] == right && start[right] == 0.0 && a > 0.0 &&
+              (start - Dofs::LinSpaced(start.size(), a, 0.0)).cwiseAbs().maxCoeff() <= 1e-12 * a,
+          wanted);
   require(interface.contains("obstacle") && bar.velocity == 0.0 &&
               interface["obstacle"]["point"][0].get<double>() == bar.start,
           wanted);
