@@ -84,29 +84,6 @@ def test_six_values_of_inertia_turn_with_the_host():
     assert (bodies.velocity[0] + np.cross(bodies.spin[0], arm))[2] == pytest.approx(0.0, abs=1e-14)
 
 
-@pytest.mark.parametrize("step", [1e-3, 7.3e-4, 3.7e-4])
-def test_a_ball_rolls_out(step):
-    """7/5 v0^2 R/(2 rho g), less the h v0/2 of the step: tests/laws/rolling."""
-    m, radius, rho, v0, gravity = 0.3, 0.05, 0.002, 1.0, 9.81
-    v, w = np.array([[v0, 0.0, 0.0]]), np.array([[0.0, v0 / radius, 0.0]])
-    before, spin_before, x = v.copy(), w.copy(), 0.0
-    bodies = Bodies(v_free=v, v_previous=before, spin_free=w, spin_previous=spin_before, inverse_mass=1 / m,
-                    inverse_inertia=2.5 / (m * radius**2), velocity=v, spin=w)  # fmt: skip
-    rolls = ilaw.Interface("rolling", delassus="transverse_spin", velocity_step=step, friction=0.5, rolling_friction=rho)
-    contact = Contacts(rolls, body=[0], counterpart=[-1], gap=0.0, normal=UP, arm=[0, 0, -radius],
-                       counterpart_arm=[0, 0, 0], energy=True)  # fmt: skip
-    contact.initialise()
-    solver, lost = Solver(), 0.0
-    for n in range(round(6.0 / step)):
-        before[:], spin_before[:] = v, w
-        v[0, 2] -= step * gravity
-        lost += solver.solve(bodies, [contact], time=(n + 1) * step).energy[0]
-        x += step * v[0, 0]
-    assert x == pytest.approx(1.4 * v0**2 * radius / (2 * rho * gravity) - 0.5 * step * v0, abs=0.2 * step**2)
-    assert lost == pytest.approx(0.7 * m * v0**2, rel=1e-12)
-    assert np.abs(contact.moment).max() <= rho * contact.impulse[0, 2] and np.abs(v).max() < 1e-14
-
-
 def test_a_wall_that_spins_takes_the_ball_with_it():
     """The plate spins about the normal: the ball's spin is tau M g t/I."""
     m, radius, tau, gravity = 0.3, 0.05, 0.001, 9.81
