@@ -1,7 +1,7 @@
 // A run that goes on from a checkpoint may have another end, another title and another output.
 #include "host_runner.hpp"
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::resume {
 namespace {
 
 json short_memory() { return shipped("postit_test3"); }
@@ -70,4 +70,4 @@ TEST(Resume, GoesOnWithOtherColumns) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::resume
