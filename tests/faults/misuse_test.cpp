@@ -57,28 +57,6 @@ TEST(Streams, ShowNoControlCharacters) {
 
 // ---- folders --------------------------------------------------------------------------------------------
 
-TEST(Folder, IsOfOneRunAtATime) {
-  const auto folder = fresh_folder(), out = folder / "out";
-  json scene = shipped("bouncing_ball");
-  scene["time"]["end"] = 1e6;
-  scene["output"]["every"] = 1000;
-  const std::string file = written(scene, folder);
-  const pid_t first = start_program({"run", file, "--out", out.string()}, folder / "messages");
-  for (int k = 0; k < 5000 && !fs::exists(out / "history.csv.partial"); ++k)
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  const std::string held =
-      "ilaw: --out " + out.string() + ": in use by process " + std::to_string(first) + " on ";
-  for (const std::string& command : {"run " + ball, "converge " + ball, "run " + file + " --resume"}) {
-    EXPECT_THAT(run_program(command + " --out " + out.string()), Exits(2, StartsWith(held))) << command;
-  }
-  EXPECT_TRUE(fs::exists(out / "history.csv.partial"));
-  kill(first, SIGTERM);
-  int status = 0;
-  waitpid(first, &status, 0);
-  EXPECT_FALSE(fs::exists(out / "ilaw.lock"));
-  EXPECT_EQ(run_program("run " + ball + " --out " + out.string()).code, 0);
-}
-
 // Whatever a link in the folder leads to stays as it is.
 TEST(Folder, HasNoLinkThatIsFollowed) {
   const auto folder = fresh_folder(), out = folder / "out";

@@ -88,18 +88,6 @@ TEST(Bench, CountsTheBytesThatALawMoves) {
   EXPECT_EQ(per_node[0]["bytes_per_node"], rest + 8 + 8);
 }
 
-TEST(Bench, MeasuresEveryCombinationOfItsOptions) {
-  const json results =
-      measured("contact --nodes 20 30 --delassus scalar,full --frame local,global --layout aos,soa");
-  EXPECT_EQ(results.size(), 16U);
-  std::set<std::string> cases;
-  for (const json& result : results) {
-    EXPECT_EQ(complaint_about(result), "") << result;
-    cases.insert(result["case"].get<std::string>() + result["nodes"].dump());
-  }
-  EXPECT_EQ(cases.size(), 16U);
-}
-
 // Packs solve what random contacts ask; a history is written node by node; nothing is told of a law of
 // somebody else.
 TEST(Bench, TellsHowManyNodesAreSolvedOneByOne) {

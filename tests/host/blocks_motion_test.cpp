@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::blocks_motion {
 namespace {
 
 Scene scene_of(const json& source) { return testing::scene_of(source); }
@@ -59,54 +59,6 @@ TEST(BlockColumn, IsABarOfThePWaveModulusWhereItCannotNarrow) {
   expect_a_bar(0.3, 3.0 * 0.7 / (1.3 * 0.4), json::array({held}));
 }
 
-// ---- the critical step ----------------------------------------------------------------------------------
-
-// 2/omega_max of M^-1/2 K M^-1/2, column by column.
-double exact_critical_step(const Model& model) {
-  const Eigen::VectorXd root = model.mass().cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd scaled(root.size(), root.size());
-  for (Eigen::Index column = 0; column < root.size(); ++column) {
-    Dofs force = Dofs::Zero(root.size());
-    model.add_internal_forces(root[column] * Dofs::Unit(root.size(), column), force);
-    scaled.col(column) = -force.cwiseProduct(root);
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(scaled, Eigen::EigenvaluesOnly);
-  return 2.0 / std::sqrt(modes.eigenvalues().maxCoeff());
-}
-
-// Largest |u| over a run.
-double largest_displacement(Scene& scene, double dt) {
-  scene.dt = dt;
-  Integrator integrator = integrator_of(scene);
-  double largest = 0.0;
-  while (integrator.steps() < 20000 && largest < 1e6) {
-    integrator.step();
-    largest = std::max(largest, integrator.displacement().cwiseAbs().maxCoeff());
-  }
-  return largest;
-}
-
-// One element: the bound is the limit itself. More: it is below the limit, here by an eighth. The shock
-// starts all modes; what is unstable by a thousandth grows by exp(2 sqrt(2e-3)) per step.
-TEST(LinearBlock, IsStableUpToItsCriticalStepAndNotBeyond) {
-  for (const json& elements : {json{1, 1, 1}, json{4, 3, 5}}) {
-    Scene scene = scene_of({{"model", block({1.0, 1.0, 1.0}, elements, material("linear", 0.3))},
-                            {"time", {{"dt", 1.0}, {"end", 1.0}}},
-                            {"loads", json::array({shock({0}, 1e-9, {0.02, -0.01, 0.015})})},
-                            {"interfaces", json::array()}});
-    const double bound = scene.model->critical_step(), limit = exact_critical_step(*scene.model);
-    if (elements[0] == 1) {
-      EXPECT_NEAR(bound, limit, 1e-12 * limit);
-    } else {
-      EXPECT_LT(bound, limit);
-      EXPECT_NEAR(bound, 0.875 * limit, 0.005 * limit);
-    }
-    EXPECT_LT(largest_displacement(scene, 0.99 * bound), 1e3);
-    EXPECT_LT(largest_displacement(scene, 0.99 * limit), 1e3);
-    EXPECT_THROW(largest_displacement(scene, 1.001 * limit), std::runtime_error);  // the motion diverged
-  }
-}
-
 // ---- what is conserved ----------------------------------------------------------------------------------
 
 Eigen::Vector3d momentum(const Scene& scene, const Integrator& integrator) {
@@ -153,4 +105,4 @@ TEST(FlyingBlock, KeepsItsMomentumAndItsAngularMomentum) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::blocks_motion

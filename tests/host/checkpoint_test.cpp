@@ -8,36 +8,8 @@
 #include <cstring>
 #include <new>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::checkpoint {
 namespace {
-
-// Nothing to go on from is bad input, found before anything ran: nothing is written.
-TEST(Checkpoint, OfNoRunOrAnotherOneIsRefused) {
-  const auto folder = fresh_folder();
-  const json scene = shipped("postit_test3");
-  const std::string file = written(scene, folder), out = " --out " + folder.string();
-  const std::string path = (folder / "checkpoint.cbor").string();
-  EXPECT_THAT(run_program("run " + file + out + " --resume"),
-              Exits(2, HasSubstr(path + ": found no checkpoint to resume from")));
-  EXPECT_EQ(run_program("run " + file + " --resume --out " + (folder / "new").string()).code, 2);
-  EXPECT_FALSE(fs::exists(folder / "new"));
-  ASSERT_EQ(run_program("run " + file + out + " --checkpoint-every 500").code, 0);
-  json other = scene;
-  other["interfaces"][0]["parameters"]["memory"] = 0.081;
-  written(other, folder);
-  EXPECT_THAT(run_program("run " + file + out + " --resume"),
-              Exits(2, HasSubstr(path + ": is of another scene: /interfaces/0/parameters/memory differs")));
-  written(scene, folder);
-  fs::remove(folder / "history.csv");
-  EXPECT_THAT(run_program("run " + file + out + " --resume"),
-              Exits(2, HasSubstr("history.csv: No such file or directory, expected the first ")));
-  std::ofstream(folder / "history.csv") << "time\n";
-  EXPECT_THAT(run_program("run " + file + out + " --resume").output,
-              HasSubstr("history.csv: found 5 bytes, expected"));
-  std::ofstream(folder / "checkpoint.cbor") << "damaged";
-  EXPECT_EQ(run_program("run " + file + out + " --resume").code, 2);
-  EXPECT_EQ(run_program("run " + file + out + " --checkpoint-every 0").code, 2);
-}
 
 // The mark of a history of a few bytes, which is written here.
 FileMark history_in(const fs::path& folder) {
@@ -45,42 +17,6 @@ FileMark history_in(const fs::path& folder) {
   FileMark mark;
   mark.add("time\n", 5);
   return mark;
-}
-
-// Cut short anywhere, or with one bit turned anywhere, it is told apart from a good one, by name; the program
-// then fails without a crash.
-TEST(Checkpoint, DamagedAnywhereIsRefused) {
-  const auto folder = fresh_folder();
-  auto [scene, integrator] = simulation_of(shipped("bouncing_ball"));
-  for (int k = 0; k < 100; ++k) integrator.step();
-  write_checkpoint(scene, integrator, {history_in(folder), json::array()}, folder);
-  const std::string good = text_of(folder / "checkpoint.cbor");
-  EXPECT_EQ(read_checkpoint(scene, integrator, folder).history, history_in(folder));
-  const auto refusal_of = [&](const std::string& bytes) -> std::string {
-    std::ofstream(folder / "checkpoint.cbor", std::ios::binary) << bytes;
-    try {
-      read_checkpoint(scene, integrator, folder);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "not refused";
-  };
-  const std::string wanted = (folder / "checkpoint.cbor").string() + ": the checkpoint is damaged";
-  const auto expect_refused = [&](const std::string& bytes) {
-    const std::string refusal = refusal_of(bytes);
-    EXPECT_EQ(refusal.substr(0, wanted.size()), wanted) << refusal;
-  };
-  std::mt19937 engine(32);
-  std::uniform_int_distribution<std::size_t> node_index(0, good.size() - 1);
-  for (int k = 0; k < 300; ++k) {
-    expect_refused(good.substr(0, node_index(engine)));
-    std::string turned = good;
-    turned[node_index(engine)] ^= static_cast<char>(1 << (k % 8));
-    expect_refused(turned);
-  }
-  expect_refused("");
-  expect_refused("what is this");
-  expect_refused(good + "x");
 }
 
 // A checkpoint with one value of its content changed, under a checksum that fits.
@@ -109,17 +45,6 @@ TEST(Checkpoint, OfEqualAccountsIsEqualBytes) {
     accounts->~Accounts();
   }
   EXPECT_EQ(written[0], written[1]);
-}
-
-TEST(Checkpoint, HoldsAllBitsOfExtendedSums) {
-  const long double tenth = 1.0L / 10.0L;
-  for (const long double value : {tenth, -3.0L * tenth, 1e300L * tenth, 0.0L, -HUGE_VALL, 1.0L + 0x1p-63L}) {
-    std::stringstream bytes;
-    write_value(bytes, value);
-    long double read = 7.0L;
-    read_value(bytes, read);
-    EXPECT_EQ(read, value);
-  }
 }
 
 // A law that reads states in another way says so by its state_version, whatever its library's version.
@@ -153,4 +78,4 @@ TEST(Checkpoint, OfAnotherLawOrStateVersionIsRefused) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::checkpoint

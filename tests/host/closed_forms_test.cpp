@@ -2,7 +2,7 @@
 // mixed mode, a landing gear, a seal and a rolling wheel.
 #include "run_result.hpp"
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::closed_forms {
 namespace {
 
 Scene scene_with_step(const char* name, double dt) {
@@ -168,26 +168,6 @@ TEST(LandingGear, SwingsAsADampedOscillatorOnAFootThatStands) {
 }
 
 // ---- seal ----
-// Squeezed by e between lid and groove, and kept from widening, it presses with E e/(1 - nu^2); a
-// pressure p, which has the part 1 - e of the front to push on, adds nu/(1 - nu) of what it pushes
-// with (Hooke's law with two strains given and one stress). Ramps of 200 times the lowest mode's
-// omega^-1 leave it ringing by a part in 200 of the force, whose mean over ten periods is a tenth
-// of that.
-TEST(Seal, PressesWithItsSqueezeAndPartOfThePressure) {
-  const double young = 5e6, nu = 0.45, squeeze = 0.1, area = 1e-4, pressure = 2e6;
-  for (const double cfl : {0.7, 0.53, 0.41}) {
-    json source = shipped("seal");
-    source["time"]["cfl"] = cfl;
-    const Ran run = ran(source);
-    const double pushed = (1.0 - squeeze) * pressure * area;
-    const double held = area * young * squeeze / (1.0 - nu * nu) + nu / (1.0 - nu) * pushed;
-    EXPECT_NEAR(run.mean_after(0.019, "fluid.F0"), pushed, 1e-3 * pushed) << cfl;
-    EXPECT_NEAR(run.mean_after(0.019, "back.F0"), -pushed, 1e-3 * pushed) << cfl;
-    EXPECT_NEAR(run.mean_after(0.019, "lid.F2"), -held, 1e-3 * held) << cfl;
-    EXPECT_GT(held, pressure * area);  // it seals
-  }
-}
-
 // ---- rolling wheel ----
 // The brush model (Pacejka 2012, ch. 3): over a patch of half length a = sqrt(2 R d) bristles are
 // pressed by k xi (2 a - xi)/(2 R), xi from where they enter, and drawn along by slip times xi, up
@@ -216,4 +196,4 @@ TEST(RollingWheel, PullsAsTheBrushModel) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::closed_forms

@@ -2,7 +2,7 @@
 #include "run_result.hpp"
 #include "study/errors.hpp"
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::converge {
 namespace {
 
 constexpr double never = ContactInstants::none;
@@ -161,76 +161,6 @@ TEST(Converge, PostitTestsAreOfFirstOrderInTime) {
   }
 }
 
-// The 3D test with elements of 0.05/2^level, half as wide and until it has come off: its rows of nodes, 0.05
-// apart, and when each broke first once the tab is lifted.
-struct Peel {
-  Trace trace;
-  std::vector<double> ruptures;
-};
-
-Peel peel_at(int level) {
-  json source = shipped("postit_3d");
-  const int n = 1 << level;
-  source["model"]["blocks"][0]["size"] = {1.0, 0.05, 0.05};
-  source["model"]["blocks"][0]["elements"] = {20 * n, n, n};
-  source["loads"][1]["history"] = json::parse("[[0.0, 0.0], [0.2, 5e-5], [0.4, 5e-5], [0.6, 0.0]]");
-  source["time"]["end"] = 1.55;
-  source["output"]["watch"] = json::array();
-  for (int row = 0; row <= 20; ++row) source["output"]["watch"].push_back({{"near", {0.05 * row, 0.0, 0.0}}});
-  auto [scene, integrator] = simulation_of(source);
-  Interface& bond = *scene.interfaces[0];
-  std::vector<int> contact_indices;
-  for (const int node : scene.output.watch) {
-    const auto node_index = std::find(bond.nodes().begin(), bond.nodes().end(), node) - bond.nodes().begin();
-    contact_indices.push_back(bond.contact_index_of(static_cast<int>(node_index), integrator.displacement()));
-  }
-  Peel peel{{}, std::vector<double>(contact_indices.size(), never)};
-  peel.trace.dt = scene.dt;
-  peel.trace.instants.resize(contact_indices.size());
-  while (integrator.steps() < scene.steps) {
-    integrator.step();
-    Dofs u(3 * static_cast<Eigen::Index>(contact_indices.size())), v(u.size());
-    for (std::size_t row = 0; row < contact_indices.size(); ++row) {
-      const auto to = 3 * static_cast<Eigen::Index>(row), from = Eigen::Index{3} * scene.output.watch[row];
-      u.segment<3>(to) = integrator.displacement().segment<3>(from);
-      v.segment<3>(to) = integrator.velocity().segment<3>(from);
-      if (integrator.time() > 0.6 && std::isnan(peel.ruptures[row]) && bond.is_active(contact_indices[row]) &&
-          bond.status(contact_indices[row]) == ILAW_BROKEN)
-        peel.ruptures[row] = integrator.time();
-    }
-    peel.trace.displacement.push_back(u);
-    peel.trace.velocity.push_back(v);
-    peel.trace.impulse.emplace_back(0);
-    peel.trace.work.push_back(0.0);
-  }
-  return peel;
-}
-
-// Rows that the tab and the free end do not hold, from the tab on.
-constexpr std::size_t first_row = 17, last_row = 1;
-
-double mean_difference(const Peel& a, const Peel& b) {
-  double sum = 0.0;
-  for (std::size_t row = last_row; row <= first_row; ++row)
-    sum += std::abs(a.ruptures[row] - b.ruptures[row]);
-  return sum / static_cast<double>(first_row - last_row + 1);
-}
-
-// Space and time together: differences of successive runs shrink as the error does, by nearly two in
-// positions, and the bond opens row by row.
-TEST(Converge, PostitTest3dConvergesInSpaceAndTime) {
-  const std::array<Peel, 3> peels{peel_at(0), peel_at(1), peel_at(2)};
-  const double coarse = errors_against(peels[1].trace, peels[0].trace).u_L2,
-               fine = errors_against(peels[2].trace, peels[1].trace).u_L2;
-  EXPECT_LE(fine, 0.015);
-  EXPECT_GE(coarse / fine, 1.7);
-  EXPECT_LE(mean_difference(peels[2], peels[1]), 0.015);
-  EXPECT_GE(mean_difference(peels[1], peels[0]) / mean_difference(peels[2], peels[1]), 1.2);
-  for (std::size_t level = 1; level < 3; ++level)
-    for (std::size_t row = last_row; row < first_row; ++row)
-      EXPECT_GT(peels[level].ruptures[row], peels[level].ruptures[row + 1]) << "row " << row;
-}
-
 // A block twice as fine along all three axes takes twice the steps at the same cfl.
 TEST(Converge, RefinesMeshAndStepTogether) {
   json scene = shipped("block_impact");
@@ -241,17 +171,5 @@ TEST(Converge, RefinesMeshAndStepTogether) {
   EXPECT_NEAR(study.table.at("steps")[1] / study.table.at("steps")[0], 2.0, 0.1);
 }
 
-TEST(Converge, WritesIntoAFolderWithAQuote) {
-  const auto folder = fresh_folder() / "it's here";
-  json scene = ball(0.5);
-  scene["title"] = "The ball's flight";
-  fs::create_directories(folder);
-  std::ofstream(folder / "scene.json") << scene;
-  const Outcome outcome = run_program("converge \"" + (folder / "scene.json").string() +
-                                      "\" --levels 3 --out \"" + folder.string() + "\"");
-  EXPECT_EQ(outcome.code, 0) << outcome.output;
-  EXPECT_EQ(json_of(folder / "converge.json")["title"], scene["title"]);
-}
-
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::converge

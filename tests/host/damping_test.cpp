@@ -5,7 +5,7 @@
 
 #include <complex>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::damping {
 namespace {
 
 // A point that is driven along y keeps the damping along x, as a free one beside it.
@@ -27,22 +27,6 @@ TEST(Damping, ActsAlongTheFreeAxesOfADrivenNode) {
     EXPECT_EQ(integrator.velocity()[1], 0.0);
     EXPECT_NEAR(integrator.displacement()[1], 0.1, 1e-15);
     EXPECT_LT(integrator.energy().balance_error, 1e-14);
-  }
-}
-
-// A block in plane strain, all nodes held along y: its velocity along x falls as e^-15, at the default step
-// and at the critical one.
-TEST(Damping, SlowsABlockInPlaneStrain) {
-  json source =
-      scene_of_blocks({block("b", {0, 0, 0}, {1, 0.2, 1}, {4, 1, 4}, elastic(1e6, 0.3, 1000))}, "[]");
-  source["model"]["blocks"][0]["velocity"] = {1, 0, 0};
-  source["loads"] =
-      json::parse(R"([{"type": "damping", "rate": 30}, {"type": "motion", "nodes": "all", "axes": [1]}])");
-  for (const double cfl : {0.9, 0.999, 0.53}) {
-    source["time"] = {{"cfl", cfl}, {"end", 0.5}};
-    auto [scene, integrator] = run_to_end(source);
-    const double end = static_cast<double>(scene.steps) * scene.dt;
-    EXPECT_NEAR(integrator.velocity()[0] / std::exp(-30.0 * end), 1.0, 0.1) << "cfl " << cfl;
   }
 }
 
@@ -74,28 +58,6 @@ TEST(Damping, LeavesTheWeightToTheFloor) {
       EXPECT_LT(run.energy("balance_error"), 1e-13);
       EXPECT_LT(run.energy("reaction_work"), CoupledStep::default_tolerance);
     }
-}
-
-// Forces of all loads and the floor add up to the change of momentum, where dampers take part of a reaction.
-TEST(Damping, TakesItsPartOfAnImpact) {
-  json source = json::parse(R"({
-    "model": {"type": "points", "dimension": 1, "points": [{"mass": 2, "position": [0.02], "velocity": [-1]}]},
-    "loads": [{"type": "damping", "name": "air", "rate": 20}, {"type": "damping", "name": "oil", "rate": 7}],
-    "interfaces": [{"name": "wall", "law": "contact", "parameters": {"restitution": 0.5}, "nodes": "all",
-      "obstacle": {"type": "plane", "point": [0], "normal": [1]}}],
-    "output": {"watch": [0], "balance": true, "forces": ["wall", "air", "oil"]}})");
-  for (const double h : coprime_steps) {
-    GIVEN(h);
-    source["time"] = {{"dt", h}, {"end", 0.3}};
-    const Ran run = ran(source);
-    const std::vector<double>&v = run["n0.v0"], &wall = run["wall.F0"];
-    for (std::size_t k = 1; k < run.rows(); ++k) {
-      EXPECT_NEAR(2.0 * (v[k] - v[k - 1]), h * (wall[k] + run["air.F0"][k] + run["oil.F0"][k]), 1e-14);
-      EXPECT_TRUE(wall[k] <= 0.0 || std::abs(v[k] + 0.5 * v[k - 1]) < 1e-15) << v[k - 1] << " to " << v[k];
-    }
-    EXPECT_GT(v.back(), 0.0);
-    EXPECT_LT(run.energy("balance_error"), 1e-14);
-  }
 }
 
 // ---- tables in time -------------------------------------------------------------------------------------
@@ -273,4 +235,4 @@ TEST(BulkViscosity, ClosesTheBalanceOfImpacts) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::damping

@@ -1,7 +1,7 @@
 // Driven nodes in interfaces, and steps that are too large.
 #include "run_result.hpp"
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::driven {
 namespace {
 
 // Half a block, its plane of symmetry driven along x alone, against the whole one: the same motion and
@@ -125,23 +125,6 @@ TEST(Driven, AlongAllAxesOnBothSidesIsRefused) {
 
 // ---- instability ----------------------------------------------------------------------------------------
 
-// A block far beyond its critical step ends the run with a reason, soon; at the critical one it does not.
-TEST(Instability, EndsTheRunWithAReason) {
-  json source =
-      scene_of_blocks({block("b", {0, 0, 0.01}, {1, 1, 1}, {3, 3, 3}, elastic(1e6, 0.3, 1000), {0, 0, -1})},
-                      {law_on("b.z_min", ground(3), "contact")});
-  source["time"] = {{"cfl", 1}, {"end", 1}};
-  const double critical = scene_of(source).dt;
-  for (const double part : {1.8, 1.4, 1.0, 0.999, 0.7}) {
-    source["time"] = {{"dt", part * critical}, {"end", 200 * critical}};
-    const Outcome outcome = run_scene(source);
-    EXPECT_EQ(outcome.code, part > 1.0 ? 1 : 0) << part << ": " << outcome.output;
-    if (part <= 1.0) continue;
-    EXPECT_THAT(outcome.output, AllOf(HasSubstr("the motion diverged: the kinetic energy is "),
-                                      HasSubstr("the critical step is ")));
-  }
-}
-
 // A spring that is too stiff for the step is told of at its first contact, once.
 TEST(Instability, OfASpringIsToldAtItsFirstContact) {
   json source = resting_point("penalty", {{"stiffness", 1e6}}, 1e-2);
@@ -152,30 +135,6 @@ TEST(Instability, OfASpringIsToldAtItsFirstContact) {
 }
 
 // ---- implicit springs -----------------------------------------------------------------------------------
-
-// An implicit spring keeps its depth: it closes within the distance of a step of the wall, and is compressed
-// by no more than the energy of the bar allows, however often it opens.
-TEST(ImplicitSpring, ClosesAtItsDepthImpactAfterImpact) {
-  constexpr double stiffness = 2000.0, speed = 0.05;
-  const json parameters = {{"stiffness", stiffness}, {"integration", "implicit"}};
-  json source = scene_of_bars({bar("bar", 0, 1, 20, 1, 1, -speed)},
-                              {law_on("bar.left", ground(1), "penalty", parameters),
-                               law_on("bar.right", plane({1}, {-1}), "penalty", parameters)});
-  for (const double cfl : {0.999, 0.7, 0.53}) {
-    source["time"] = {{"cfl", cfl}, {"end", 400}};
-    auto [scene, integrator] = simulation_of(source);
-    double deepest = 0.0, fastest = 0.0;
-    while (integrator.steps() < scene.steps) {
-      integrator.step();
-      const Dofs &u = integrator.displacement(), &v = integrator.velocity();
-      deepest = std::max({deepest, -u[0], u[20]});
-      fastest = std::max({fastest, std::abs(v[0]), std::abs(v[20])});
-    }
-    const double compressed = speed / std::sqrt(stiffness);  // k x^2/2 = m v^2/2
-    EXPECT_GT(deepest, compressed) << cfl;
-    EXPECT_LE(deepest, scene.dt * fastest + compressed) << cfl;
-  }
-}
 
 // With e < 1 a bar that settles on its floor stays at its depth: what restitution takes off the indentation
 // is given back while the spring stays closed. Without that a spring of ten elements is 0.3 elements deep.
@@ -207,4 +166,4 @@ TEST(ImplicitSpring, StaysAtItsDepthUnderABarThatSettles) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::driven

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::errors {
 namespace {
 
 constexpr double no_instant = ContactInstants::none;
@@ -35,14 +35,6 @@ Trace trace_of(const ExactNode& node, double dt, int steps) {
   trace.instants = {node.instants};
   trace.energy = 1.0;
   return trace;
-}
-
-TEST(Norms, AreZeroForTheExactMotion) {
-  const Errors errors = errors_against({bounce(0.4321)}, trace_of(bounce(0.4321), 1e-2, 100));
-  EXPECT_EQ(errors.u_L2, 0.0);
-  EXPECT_EQ(errors.u_max, 0.0);
-  EXPECT_EQ(errors.v_L1, 0.0);
-  EXPECT_EQ(errors.instant, 0.0);
 }
 
 // A bounce that is seen one step late: one velocity of N is wrong, by 2 where the mean is 1, and positions
@@ -80,16 +72,6 @@ TEST(Norms, AgainstAFinerRunOfTheSameMotionAreThoseOfTheMotion) {
   const Errors late = errors_against(trace_of(bounce(0.505), h / 8.0, 800), trace_of(bounce(0.515), h, 99));
   EXPECT_NEAR(late.u_max, 2.0 * h / 0.5, 1e-12);  // the largest of the reference where the trace looks
   EXPECT_NEAR(late.instant, h, 1e-15);
-}
-
-// Samples of the coarse run fall between those of the finer one, where velocities go on changing.
-TEST(Norms, AgainstAFinerRunSeeNoErrorOfADecelerationThatIsExact) {
-  ExactNode node;
-  node.displacement = [](double t) { return t - 0.25 * t * t; };
-  node.velocity = [](double t) { return 1.0 - 0.5 * t; };
-  for (const int finer : {2, 3, 8})
-    EXPECT_LE(errors_against(trace_of(node, 1e-2 / finer, 100 * finer), trace_of(node, 1e-2, 99)).v_L1, 1e-14)
-        << finer;
 }
 
 TEST(Norms, TakeTheInstantThatIsFarthestOffOfThoseThatBothHave) {
@@ -146,4 +128,4 @@ TEST(Order, OfATableScalesInstantsByTheRun) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::errors

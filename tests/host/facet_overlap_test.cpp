@@ -224,29 +224,4 @@ TEST(FacetOverlap, PutsRowsOnTheBorder) {
   }
 }
 
-// Smaller main faces, turned in all directions: no row lies beyond the overlap, and the outermost row lies at
-// most this part of an edge short of it.
-TEST(FacetOverlap, CarriesToTheBorderInAllDirections) {
-  const Plane plane{Eigen::Matrix3d::Identity(), 0.0};
-  constexpr int n = 12;
-  double beyond = 0.0, lacking = 0.0;
-  for (int degrees = 0; degrees < 46; degrees += 5) {
-    const Face own = face_of(plane, n, 1.0, 0.0, false, true),
-               main = face_of(plane, 7, 0.6, degrees * std::numbers::pi / 180.0, false, false);
-    const Rows rows = rows_of(own, main);
-    for (int direction = 0; direction < 360; ++direction) {
-      const double a = direction * std::numbers::pi / 180.0;
-      const Vector3d along(std::cos(a), std::sin(a), 0.0);
-      double reach = -1e9, end = -1e9;
-      for (const Vector3d& node : main.nodes) end = std::max(end, along.dot(node));
-      for (std::size_t i = 0; i < own.nodes.size(); ++i)
-        if (rows.area[i] > 0.0) reach = std::max(reach, along.dot(rows.own[i]) / rows.area[i]);
-      beyond = std::max(beyond, n * (reach - end));
-      lacking = std::max(lacking, n * (end - reach));
-    }
-  }
-  EXPECT_LT(beyond, margin);
-  EXPECT_LT(lacking, 0.35);
-}
-
 }  // namespace

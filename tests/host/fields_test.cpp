@@ -17,7 +17,7 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::fields {
 namespace {
 
 void expect_vectors(vtkUnstructuredGrid& grid, const char* name, const Dofs& wanted, int d) {
@@ -292,4 +292,4 @@ TEST(Diverged, StateIsWrittenAndNamed) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::fields

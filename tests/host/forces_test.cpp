@@ -6,7 +6,7 @@
 #include <csignal>
 #include <thread>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::forces {
 namespace {
 
 // A bouncing block of rubber, its top moved to and fro along x, damped, pushed and struck.
@@ -102,22 +102,6 @@ TEST(Forces, CarryTheWeightAtRest) {
   for (const auto& [column, value] : expected) EXPECT_NEAR(run.last(column), value, 1e-12) << column;
 }
 
-// A bar between a bond and a grip that stretches it: both carry E S u/L at rest, and so says the held
-// node's own column.
-TEST(Forces, AreTheStressOfAJointAndTheReactionOfAGrip) {
-  const json scene = json::parse(R"({
-    "model": {"type": "bars", "bars": [{"name": "b", "length": 2, "elements": 10, "young": 100, "density": 1, "section": 0.3}]},
-    "time": {"cfl": 0.8, "end": 50},
-    "loads": [{"type": "damping", "rate": 0.5}, {"type": "motion", "nodes": "b.right", "path": [[0, 0], [10, 0.01]]}],
-    "interfaces": [{"name": "joint", "law": "tie", "nodes": "b.left", "obstacle": {"type": "plane", "point": [0], "normal": [1]}}],
-    "output": {"every": 13, "watch": ["b.right"], "forces": ["joint", "b.right"]}})");
-  const Ran run = ran(scene);
-  const double force = 100 * 0.3 * 0.01 / 2, h = 0.8 * 0.2 / 10;
-  EXPECT_NEAR(run.last("joint.F0"), -force, 1e-4 * force);
-  EXPECT_NEAR(run.last("b.right.F0"), force, 1e-4 * force);
-  EXPECT_NEAR(run.last("n10.r0"), force * h, 1e-4 * force * h);
-}
-
 // A spring and a damper between two thrown masses, and one to a wall: what they do to their own
 // nodes is what changes their momentum, and turns them about the wall's end by nothing.
 TEST(Forces, OfSpringsAreTheChangeOfMomentumOfTheirNodes) {
@@ -190,29 +174,6 @@ TEST(Forces, OfDampingDoNotReachAGrip) {
   EXPECT_NEAR(ran(scene).last("n26.u0"), 0.0, 1e-12);
 }
 
-// Damping takes what a sliding mass has; loads and interfaces do no work.
-TEST(Forces, OfDampingWorkApart) {
-  const json scene = json::parse(R"({
-    "model": {"type": "points", "dimension": 1, "points": [{"mass": 2, "position": [0], "velocity": [3]}]},
-    "time": {"dt": 0.001, "end": 10}, "loads": [{"type": "damping", "rate": 2}], "interfaces": [],
-    "output": {"every": 100, "balance": true}})");
-  const Ran run = ran(scene);
-  EXPECT_NEAR(run.last("balance.damping_work"), -9.0, 0.03);
-  EXPECT_EQ(run.last("balance.external_work"), 0.0);
-  EXPECT_LT(run.last("balance.error"), 1e-13);
-}
-
-// Friction stops a block: it takes all kinetic energy.
-TEST(Forces, DissipateByKindOverTime) {
-  json scene = shipped("sliding_block");
-  scene["output"]["balance"] = true;
-  const Ran run = ran(scene);
-  const std::vector<double>& friction = run["balance.dissipated_friction"];
-  EXPECT_TRUE(std::is_sorted(friction.begin(), friction.end()));
-  EXPECT_NEAR(friction.back(), run.energy("dissipated_friction"), 0.0);
-  EXPECT_GT(friction.back(), 0.0);
-}
-
 // ---- events ---------------------------------------------------------------------------------------------
 
 std::size_t count(const std::string& text, const std::string& part) {
@@ -266,39 +227,5 @@ TEST(Events, OfAnInterfaceThatEndsAreItsReleases) {
   }
 }
 
-// ---- resumed, refused -----------------------------------------------------------------------------------
-
-// A checkpoint between rows takes along what has been added up.
-TEST(Forces, AndEventsSurviveACheckpointWithTheSameBytes) {
-  json scene = shaken_block();
-  scene["time"]["cfl"] = 0.005;  // long enough to be killed
-  scene["output"]["every"] = 1001;
-  scene["output"]["events"] = true;
-  const auto whole = fresh_folder(), pieces = fresh_folder();
-  const auto file = (whole / "scene.json").string();
-  std::ofstream(file) << scene.dump();
-  ASSERT_EQ(run_program("run " + file + " --out " + whole.string()).code, 0);
-  std::vector<std::string> command{"run", file, "--out", pieces.string(), "--checkpoint-every", "10"};
-  bool is_killed = false;
-  for (int k = 0; k < 20 && !is_killed; ++k) {
-    fs::remove_all(pieces);
-    const pid_t child = start_program(command, whole / "messages");
-    while (waitpid(child, nullptr, WNOHANG) == 0 && !fs::exists(pieces / "checkpoint.cbor"))
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    kill(child, SIGKILL);
-    int status = 0;
-    is_killed = waitpid(child, &status, 0) == child && WIFSIGNALED(status);
-  }
-  ASSERT_TRUE(is_killed) << "the run is too short for this machine";
-  ASSERT_EQ(run_program("run " + file + " --out " + pieces.string() + " --checkpoint-every 10 --resume").code,
-            0);
-  const json summary = json_of(pieces / "summary.json");
-  EXPECT_NE(summary["execution"]["resumed_at_step"].get<int>() % 1001, 0);
-  EXPECT_NE(summary["execution"]["resumed_at_step"], summary["steps"]);
-  EXPECT_EQ(text_of(pieces / "history.csv"), text_of(whole / "history.csv"));
-  EXPECT_EQ(text_of(pieces / "events.csv"), text_of(whole / "events.csv"));
-  EXPECT_EQ(summary["forces"], json_of(whole / "summary.json")["forces"]);
-}
-
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::forces

@@ -1,7 +1,7 @@
 // Displacements at the start, against motions that are known.
 #include "host_runner.hpp"
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::initial {
 namespace {
 
 json block(const char* material, double poisson) {
@@ -62,4 +62,4 @@ TEST(Initial, StretchStoresWhatAnElasticBodyDoes) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::initial

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::joint_heat {
 namespace {
 
 using nlohmann::json;
@@ -42,9 +42,7 @@ TEST(JointHeat, JumpsAsTheFluxSays) {
       json scene = two_columns(below, above, fraction * above.stable_step(), 40.0, joint(conductance));
       scene["loads"].push_back(held("below.z_min", warm));
       scene["loads"].push_back(held("above.z_max", cold));
-      Scene read = scene_of(scene.dump());
-      Integrator integrator = integrator_of(read);
-      run(integrator, read.steps);
+      auto [read, integrator] = run_to_end(scene);
       expect_steady(integrator, *read.model, below, above, conductance);
     }
 }
@@ -63,9 +61,7 @@ TEST(JointHeat, PassesOverMeshesThatDoNotMatch) {
       scene["loads"].push_back(held("below.z_min", warm));
       scene["loads"].push_back(held("above.z_max", cold));
       scene["time"]["dt"] = 0.95 * scene_of(scene.dump()).model->thermal()->stable_step().step;
-      Scene read = scene_of(scene.dump());
-      Integrator integrator = integrator_of(read);
-      run(integrator, read.steps);
+      auto [read, integrator] = run_to_end(scene);
       expect_steady(integrator, *read.model, below, above, conductance);
     }
 }
@@ -78,9 +74,7 @@ TEST(JointHeat, IsExactUnderAConstantHeating) {
   for (const double dt : {0.13, 0.031, 0.0077}) {
     json scene = two_columns(below, above, dt, 2.0, joint(conductance));
     scene["loads"].push_back({{"type", "heat_flux"}, {"nodes", "above.z_min"}, {"history", {{0, heating}}}});
-    Scene read = scene_of(scene.dump());
-    Integrator integrator = integrator_of(read);
-    run(integrator, read.steps);
+    auto [read, integrator] = run_to_end(scene);
     const double area = 0.25, capacity = 0.125, other = 0.25;  // of a node of each face
     const double rate = conductance * area * (1.0 / capacity + 1.0 / other);
     const double expected =
@@ -101,9 +95,7 @@ TEST(JointHeat, GivesAnObstacleItsHeat) {
     scene["interfaces"][0]["nodes"] = {0};
     scene["interfaces"][0]["obstacle"] = {
         {"type", "plane"}, {"point", {0}}, {"normal", {1}}, {"temperature", 300}};
-    Scene read = scene_of(scene.dump());
-    Integrator integrator = integrator_of(read);
-    run(integrator, read.steps);
+    auto [read, integrator] = run_to_end(scene);
     const double left = 100.0 * std::exp(-1.5 * thermal_time(integrator, dt) / 6.0);
     EXPECT_NEAR(integrator.temperatures()->at(0), 300.0 + left, 1e-11);
     const HeatReport heat = integrator.temperatures()->report();
@@ -131,9 +123,7 @@ TEST(JointHeat, SharesANodeBySecondOrder) {
       scene["interfaces"].back()["nodes"] = {0};
       scene["interfaces"].back()["against"] = {{"nodes", {k}}, {"normal", {1}}};
     }
-    Scene read = scene_of(scene.dump());
-    Integrator integrator = integrator_of(read);
-    run(integrator, read.steps);
+    auto [read, integrator] = run_to_end(scene);
     const double rate = conductance * (1 + others) / capacity;
     const double expected = 100.0 * std::exp(-rate * thermal_time(integrator, dt));
     steps.push_back(dt);
@@ -144,4 +134,4 @@ TEST(JointHeat, SharesANodeBySecondOrder) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::joint_heat

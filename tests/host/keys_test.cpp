@@ -6,7 +6,7 @@
 
 #include <chrono>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::keys {
 namespace {
 
 constexpr double g = 10.0, h = 1e-3;
@@ -221,25 +221,5 @@ TEST(PerNode, IsJudgedNodeByNode) {
             "not refused");
 }
 
-// Reading costs the same for each parameter and node.
-TEST(PerNode, TakesNoLongerTogetherThanOneByOne) {
-  constexpr int count = 20000;
-  std::vector<json> points;
-  json values = json::array();
-  for (int k = 0; k < count; ++k) {
-    points.push_back(point({k, 0, 0}, {0, 0, 0}));
-    values.push_back(0.1 + 1e-6 * k);
-  }
-  json parameters;
-  for (const char* name :
-       {"friction", "kinetic_friction", "decay", "friction_2", "restitution", "tangential_restitution"})
-    parameters[name] = {{"per_node", values}};
-  const json scene =
-      points_on_plane(points, {{"law", "coulomb"}, {"parameters", parameters}, {"tangent", {1, 0, 0}}});
-  const auto start = std::chrono::steady_clock::now();
-  EXPECT_EQ(refusal_of(scene), "not refused");
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
-}
-
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::keys

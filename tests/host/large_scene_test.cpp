@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::large_scene {
 namespace {
 
 // Points that fall on a plane, each at its own time: enough for several chunks.
@@ -118,4 +118,4 @@ TEST(LargeScene, TellsAMistakeInItsTable) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::large_scene

@@ -5,7 +5,7 @@
 #include "model/mesh_topology.hpp"
 #include "scene/read_meshes.hpp"
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::mesh_file {
 namespace {
 
 json scene_with(const std::string& file) {
@@ -33,16 +33,26 @@ void expect_refusal(const std::string& found, const std::string& expected) {
 
 // ---- what is refused ------------------------------------------------------------------------------------
 
-TEST(MeshFile, ThatIsNotThereIsRefused) {
+// Nothing in a file of the legacy format tells whether its end is missing.
+TEST(MeshFile, ThatCannotBeReadIsRefused) {
+  const auto changed = [](const char* from, const char* to) {
+    std::string text = two_cells().vtu();
+    return text.replace(text.rfind(from), std::string(from).size(), to);
+  };
   expect_refusal(refusal_of(scene_with("nowhere.vtu")), "nowhere.vtu: no such file, expected a mesh");
   expect_refusal(refusal_of(scene_with("/tmp")), "found no file, expected a mesh");
-}
-
-TEST(MeshFile, OfGmshNamesTheConverter) {
-  const MeshFile file("$MeshFormat\n", "part.msh");
-  expect_refusal(refusal_of(scene_with(file.path())),
-                 "found the extension '.msh', expected .vtu; `meshio convert mesh.msh mesh.vtu` writes one "
-                 "(Debian package python3-meshio)");
+  for (
+      const auto& [name, text, expected] : std::vector<std::array<std::string, 3>>{
+          {"part.msh", "$MeshFormat\n",
+           "found the extension '.msh', expected .vtu; `meshio convert mesh.msh mesh.vtu` writes one (Debian package "
+           "python3-meshio)"},
+          {"part.vtk", "# vtk DataFile Version 3.0\n", "`meshio convert mesh.vtk mesh.vtu` writes one"},
+          {"mesh.vtu", changed("12 12", "12 13"),
+           "cell 1: found VTK's cell type 13, expected elements with 4 or 8 nodes (types 10, 12)"},
+          {"mesh.vtu", changed("8 16", "7 16"), "cell 0: found 7 nodes, expected 8"}}) {
+    const MeshFile file(text, name);
+    expect_refusal(refusal_of(scene_with(file.path())), expected);
+  }
 }
 
 TEST(MeshFile, ThatMakesNoBodyIsRefusedWithThePlace) {
@@ -88,30 +98,6 @@ TEST(MeshFile, ThatMakesNoBodyIsRefusedWithThePlace) {
   }
 }
 
-TEST(MeshFile, WithACellOfAnotherTypeIsRefused) {
-  std::string text = two_cells().vtu();
-  const auto at = text.rfind("12 12");
-  const MeshFile file(text.replace(at, 5, "12 13"));
-  expect_refusal(refusal_of(scene_with(file.path())),
-                 "cell 1: found VTK's cell type 13, expected elements with 4 or 8 nodes (types 10, 12)");
-}
-
-TEST(MeshFile, WithAWrongNumberOfNodesIsRefused) {
-  const MeshFile file([] {
-    std::string text = two_cells().vtu();
-    return text.replace(text.rfind("8 16"), 4, "7 16");
-  }());
-  expect_refusal(refusal_of(scene_with(file.path())), "cell 0: found 7 nodes, expected 8");
-}
-
-TEST(MeshFile, WithAnInfiniteCoordinateIsRefused) {
-  std::string text = two_cells().vtu();
-  text.replace(text.find("\n0 0 0 ") + 1, 1, "nan");
-  const MeshFile file(text);
-  const std::string said = refusal_of(scene_with(file.path()));
-  EXPECT_EQ(said.rfind("/model/meshes/0/file: ", 0), 0U) << said;
-}
-
 // Without its last byte the mesh is the same: the file ends with a line feed.
 TEST(MeshFile, ThatIsCutOffIsRefused) {
   for (const char* name : {"arch.vtu", "bracket.vtu"}) {
@@ -126,12 +112,6 @@ TEST(MeshFile, ThatIsCutOffIsRefused) {
     }
     expect_refusal(refusal_of(scene_with(file.path())), "the file is damaged: it does not end with");
   }
-}
-
-// Nothing in such a file tells whether its end is missing.
-TEST(MeshFile, OfTheLegacyFormatIsRefused) {
-  const MeshFile file("# vtk DataFile Version 3.0\n", "part.vtk");
-  expect_refusal(refusal_of(scene_with(file.path())), "`meshio convert mesh.vtk mesh.vtu` writes one");
 }
 
 TEST(MeshFile, WithoutTheSetOfASceneNamesThoseThereAre) {
@@ -222,19 +202,6 @@ TEST(MeshFile, TellsOfPartsThatShareNoNode) {
   EXPECT_EQ(scene_of(scene_with(file.path()).dump()).meshes[0]["parts"], 2);
 }
 
-TEST(MeshFile, OfACheckpointMustBeTheSame) {
-  const MeshFile file(two_cells());
-  const auto folder = file.path().parent_path();
-  std::ofstream(folder / "scene.json") << scene_with("mesh.vtu").dump();
-  const std::string run = "run " + (folder / "scene.json").string() + " --out " + (folder / "out").string();
-  EXPECT_EQ(run_program(run + " --checkpoint-every 1").code, 0);
-  EXPECT_EQ(run_program(run + " --resume").code, 0);
-  WrittenMesh mesh = two_cells();
-  mesh.nodes[0] -= Eigen::Vector3d(0.01, 0, 0);
-  std::ofstream(file.path()) << mesh.vtu();
-  EXPECT_THAT(run_program(run + " --resume"), Exits(2, HasSubstr("is of other meshes")));
-}
-
 TEST(MeshFile, CannotBeRefined) {
   const MeshFile file(two_cells());
   json scene = scene_with(file.path());
@@ -303,4 +270,4 @@ TEST(MeshFile, SurvivesDamage) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::mesh_file

@@ -13,7 +13,7 @@
 
 #include <numbers>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::mesh {
 namespace {
 
 constexpr double young = 3.0, poisson = 0.3, density = 2.0;
@@ -100,21 +100,6 @@ TEST_P(MeshKinds, AreTheGradientOfTheirEnergy) {
   const double slope = (model.potential(u + h * along) - model.potential(u - h * along)) / (2.0 * h);
   const Dofs force = forces(model, u);
   EXPECT_NEAR(-force.dot(along), slope, 1e-9 * force.norm() * along.norm());
-}
-
-TEST_P(MeshKinds, StoreTheEnergyOfAHomogeneousStrain) {
-  const Kind kind = GetParam();
-  const Solids model = solids_of(distorted(kind.tetrahedra), kind);
-  Eigen::Matrix3d gradient;
-  gradient << 0.11, 0.05, -0.02, 0.03, -0.07, 0.04, -0.06, 0.02, 0.09;
-  const Eigen::Matrix3d F = Eigen::Matrix3d::Identity() + gradient,
-                        strain = 0.5 * (gradient + gradient.transpose());
-  const double log = std::log(F.determinant()), trace = strain.trace();
-  const double density_of_energy =
-      kind.law == MaterialLaw::linear
-          ? kind.mu() * strain.squaredNorm() + 0.5 * kind.lambda() * trace * trace
-          : 0.5 * kind.mu() * (F.squaredNorm() - 3.0) - kind.mu() * log + 0.5 * kind.lambda() * log * log;
-  EXPECT_NEAR(model.potential(linear_field(model, gradient)), 2.0 * 1.2 * 0.9 * density_of_energy, 1e-13);
 }
 
 // A large rotation and translation, of a solid that is made for them.
@@ -265,46 +250,6 @@ TEST(Mesh, FallsLikeABox) {
   EXPECT_LT((b.velocity() - a.velocity()).norm(), 1e-9 * a.velocity().norm());
 }
 
-// ---- closed forms ---------------------------------------------------------------------------------------
-
-// The first longitudinal vibration of a bar fixed at one end, u = sin(pi x/2L) cos(w t), w = pi c/2L without
-// lateral strain: relative difference of the displacement at the free end after some periods.
-double vibration_error(bool tetrahedra, int elements, double cfl) {
-  const Kind kind{tetrahedra, MaterialLaw::linear, Element::full, 0.0};
-  const double length = 1.0, c = std::sqrt(young / density), w = std::numbers::pi * c / (2.0 * length);
-  const Solids model = solids_of(
-      box_mesh({elements, 2, 2}, {length, 2.0 * length / elements, 2.0 * length / elements}, tetrahedra),
-      kind);
-  Dofs u = Dofs::Zero(model.mass().size());
-  for (int node = 0; node < model.node_count(); ++node)
-    u[3 * node] = std::sin(std::numbers::pi * model.position()[3 * node] / (2.0 * length));
-  const double end = 3.3 * 2.0 * std::numbers::pi / w, steps = std::ceil(end / (cfl * model.critical_step())),
-               dt = end / steps;
-  Dofs v = 0.5 * dt * forces(model, u).cwiseQuotient(model.mass());
-  for (int n = 0; n < static_cast<int>(steps); ++n) {
-    for (int node = 0; node < model.node_count(); ++node)
-      if (model.position()[3 * node] == 0.0) v.segment<3>(3 * node).setZero();
-    u += dt * v;
-    v += dt * forces(model, u).cwiseQuotient(model.mass());
-  }
-  double mean = 0.0;
-  for (const int node : model.sets().at("m.x_max").nodes) mean += u[3 * node] / 9.0;
-  return std::abs(mean - std::cos(w * end));
-}
-
-TEST(Mesh, BarVibratesWithItsNaturalFrequency) {
-  for (const bool tetrahedra : {false, true})
-    for (const double cfl : {0.9, 0.613, 0.287}) {
-      std::vector<double> sizes, errors;
-      for (const int elements : {8, 12, 18, 27}) {
-        sizes.push_back(1.0 / elements);
-        errors.push_back(vibration_error(tetrahedra, elements, cfl));
-      }
-      EXPECT_LT(errors.back(), 0.02) << tetrahedra << cfl;
-      EXPECT_GT(order(sizes, errors), 1.7) << tetrahedra << cfl;
-    }
-}
-
 // ---- near incompressibility -----------------------------------------------------------------------------
 
 Dofs at_rest(const Solids& model, const Dofs& load, const std::vector<bool>& held) {
@@ -408,34 +353,5 @@ TEST(Mesh, TrianglesInterpolateTheirCorners) {
   }
 }
 
-// A box that rests on the triangles of a mesh is pressed down: the force on the floor is that on its top, and
-// a uniform pressure goes through meshes that do not match.
-TEST(Mesh, TrianglesAreASurface) {
-  const MeshFile file(box_mesh({3, 3, 1}, {0.1, 0.1, 0.04}, true));
-  auto [scene, integrator] = simulation_of(R"({"model": {"type": "solids",
-      "meshes": [{"name": "m", "file": ")" +
-                                           file.path().string() + R"(", "material":
-        {"type": "linear", "young": 1e6, "poisson": 0, "density": 1000}}],
-      "blocks": [{"name": "b", "corner": [0, 0, 0.04], "size": [0.1, 0.1, 0.05], "elements": [2, 2, 1], "material":
-        {"type": "linear", "young": 1e6, "poisson": 0, "density": 1000}}]},
-    "time": {"cfl": 0.9, "end": 0.06},
-    "loads": [{"type": "damping", "rate": 500},
-              {"type": "pressure", "surface": "b.z_max", "history": [[0, 0], [0.02, 100]]}],
-    "interfaces": [{"name": "between", "law": "contact", "nodes": "b.z_min",
-                    "against": {"surface": "m.z_max", "both_sides": true}},
-                   {"name": "floor", "law": "contact", "nodes": "m.z_min",
-                    "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})");
-  for (std::int64_t n = 0; n < scene.steps; ++n) integrator.step();
-  EXPECT_LT(integrator.energy().balance_error, 1e-12);
-  double floor = 0.0;
-  Dofs impulse = Dofs::Zero(scene.model->mass().size());
-  for (const std::int32_t contact : scene.interfaces[1]->active())
-    scene.interfaces[1]->add_impulse(contact, impulse);
-  for (Eigen::Index k = 2; k < impulse.size(); k += 3) floor += impulse[k] / scene.dt;
-  EXPECT_NEAR(floor, 100.0 * 0.01, 1e-4);
-  for (const Eigen::Matrix3d& stress : scene.model->stresses(integrator.displacement()))
-    EXPECT_NEAR(stress(2, 2), -100.0, 10.0);
-}
-
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::mesh

@@ -124,27 +124,6 @@ TEST(MovingObstacle, IsTheOneAtRestDisplaced) {
     }
 }
 
-// A sphere that moves at 2 hits a resting point at distance 1.5 from its surface, after 0.75: e = 1 throws it
-// off at twice the speed, along the line of centres.
-TEST(MovingSphere, ThrowsAPointOff) {
-  auto [scene, integrator] = simulation_of(R"({
-    "model": {"type": "points", "dimension": 3, "points": [{"mass": 2, "position": [0, 0, 0]}]},
-    "time": {"dt": 1e-3, "end": 1.5},
-    "interfaces": [{"law": "contact", "parameters": {"restitution": 1}, "nodes": [0],
-      "obstacle": {"type": "sphere", "center": [-1.5, -2, 0], "radius": 1, "velocity": [1.2, 1.6, 0]}}]})");
-  while (integrator.steps() < scene.steps) {
-    integrator.step();
-    if (integrator.time() < 0.75 - scene.dt) {
-      EXPECT_EQ(integrator.velocity().norm(), 0.0);
-    }
-  }
-  EXPECT_NEAR((integrator.velocity() - Vector3d(2.4, 3.2, 0.0)).norm(), 0.0, 1e-12);
-  // From the instant on, at most a step late.
-  EXPECT_NEAR(integrator.displacement().norm(), 4.0 * 0.75, 4.0 * 1.001e-3);
-  EXPECT_LE(integrator.energy().balance_error, 1e-14);
-  EXPECT_NEAR(integrator.energy().interface_work, 0.5 * 2.0 * 16.0, 1e-11);
-}
-
 // ---- prescribed motion ----------------------------------------------------------------------------------
 
 // Positions follow a path at all steps, corners included, on the axes that are driven; the others are free.
@@ -179,28 +158,6 @@ TEST(PrescribedMotion, DoesTheWorkOfItsForce) {
 }
 
 // ---- damping --------------------------------------------------------------------------------------------
-
-// v' = -rate v: v_0 exp(-rate t) at half steps, x its integral; the force at the mean of velocities makes the
-// scheme of second order, and the energy that is lost is its work.
-TEST(Damping, DecaysExponentiallyToSecondOrder) {
-  constexpr double rate = 2.0, end = 1.0;
-  json source = json::parse(R"({
-    "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [0, 0], "velocity": [3, -4]}]},
-    "loads": [{"type": "damping", "rate": 2}], "interfaces": []})");
-  std::vector<double> steps, v_errors, u_errors;
-  for (const double dt : {0.02, 0.01, 0.005, 0.0025}) {
-    source["time"] = {{"dt", dt}, {"end", end}};
-    auto [scene, integrator] = run_to_end(source);
-    const Eigen::Vector2d start(3.0, -4.0);
-    const double t = integrator.time();
-    steps.push_back(dt);
-    v_errors.push_back((integrator.velocity() - std::exp(-rate * (t + 0.5 * dt)) * start).norm());
-    u_errors.push_back((integrator.displacement() - (1.0 - std::exp(-rate * t)) / rate * start).norm());
-    EXPECT_LE(integrator.energy().balance_error, 1e-14) << "dt " << dt;
-  }
-  EXPECT_NEAR(order(steps, v_errors), 2.0, 0.05);
-  EXPECT_NEAR(order(steps, u_errors), 2.0, 0.05);
-}
 
 }  // namespace
 }  // namespace ilaw::host::testing

@@ -1,7 +1,7 @@
 // The force that peels a tape, which is a string of points, against its closed form.
 #include "run_result.hpp"
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::peel {
 namespace {
 
 constexpr double toughness = 6.0, width = 0.01, edge = 1e-3, stiffness = 10.0;  // the last: E A, in N
@@ -64,4 +64,4 @@ TEST(PeelForce, IsToughnessTimesWidthOverOneLessTheCosine) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::peel

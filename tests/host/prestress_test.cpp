@@ -6,7 +6,7 @@
 #include <numeric>
 #include <thread>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::prestress {
 namespace {
 
 constexpr double young = 1e6, density = 1000.0, acceleration = 10.0, height = 0.5, side = 0.1;
@@ -176,28 +176,6 @@ TEST(Prestress, RampMovesWhatMoves) {
   }
 }
 
-// Without loads a deformed body finds back to its shape.
-TEST(Prestress, UnloadedBodyRelaxes) {
-  json source = column(0.9);
-  source["loads"] = json::array();
-  source["interfaces"] = json::array();
-  source["output"] = json::object();
-  source["initial"] = {{{"gradient", {{0.01, 0, 0}, {0, -0.02, 0}, {0, 0, 0.03}}}}};
-  auto [scene, integrator] = simulation_of(source);
-  integrator.start();
-  EXPECT_LT(scene.model->potential(integrator.displacement()), 1e-12);
-}
-
-TEST(Prestress, BodiesKeepTheirVelocities) {
-  json source = column(0.9);
-  source["model"]["blocks"][0]["velocity"] = {0.7, 0, 0};
-  source["interfaces"][0]["parameters"]["friction"] = 0.0;
-  auto [scene, integrator] = simulation_of(source);
-  integrator.start();
-  EXPECT_NEAR(integrator.velocity()[0], 0.7, 1e-9);
-  EXPECT_NEAR(integrator.displacement()[0], 0.0, 1e-12);
-}
-
 TEST(Prestress, EndsTheRunWhereItIsNotFound) {
   json source = column(0.9);
   source["prestress"] = {{"steps", 20}};
@@ -223,4 +201,4 @@ TEST(Prestress, SealPressesFromTheStart) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::prestress

@@ -7,7 +7,7 @@
 #include <regex>
 #include <thread>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::program {
 namespace {
 
 const std::string ball = scene_files::named("bouncing_ball.json").string();
@@ -136,55 +136,6 @@ TEST(Program, ChecksALibraryByAProgramOfItsOwn) {
   EXPECT_EQ(run_command(program + " --rules >/dev/full").code, 1);
 }
 
-// The law is not blamed for the velocities that it is given.
-TEST(Program, FailsWithCodeOneWhereTheMotionOverflows) {
-  const auto folder = fresh_folder();
-  std::ofstream(folder / "scene.json") << R"({"model": {"type": "points", "dimension": 1,
-    "points": [{"mass": 1e-300, "position": [1.0]}]}, "time": {"dt": 1.0, "end": 3.0},
-    "loads": [{"type": "force", "nodes": [0], "direction": [1e300], "history": [[0.5, 0.0], [1.5, 1.0]]}],
-    "interfaces": [{"law": "contact", "nodes": "all", "skip": false,
-                    "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})";
-  const Outcome outcome =
-      run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
-  EXPECT_EQ(outcome.code, 1) << outcome.output;
-  EXPECT_THAT(outcome.output, HasSubstr("the motion diverged: velocity inf at node 0, step 1, time 1.0"));
-}
-
-// A library that breaks its promise is named, with the node.
-// Two points at a plane, of which a library sees the second.
-Outcome run_with(const std::string& library) {
-  const auto folder = fresh_folder();
-  std::ofstream(folder / "scene.json") << R"({"model": {"type": "points", "dimension": 1, "points": [
-      {"mass": 1, "position": [1]}, {"mass": 1, "position": [0]}]}, "time": {"dt": 0.5, "end": 1},
-    "interfaces": [{"name": "floor", "law": "zero", "library": ")"
-                                       << library << R"(", "nodes": [1], "skip": false,
-                    "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})";
-  return run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
-}
-
-// The report names a node that is none: it must not lead anywhere.
-TEST(Program, FailsWithCodeOneWhereALawMakesUpABadNode) {
-  EXPECT_THAT(run_with(ILAW_ODD_NODE),
-              Exits(1, HasSubstr("interface 'floor' (law 'zero', library " ILAW_ODD_NODE
-                                 "): it named node 1099511627776, which is none of the batch")));
-}
-
-TEST(Program, FailsWithCodeOneWhereALawGivesAnUnknownStatus) {
-  EXPECT_THAT(run_with(ILAW_ODD_STATUS),
-              Exits(1, HasSubstr("interface 'floor' (law 'zero', library " ILAW_ODD_STATUS
-                                 "): found status 42 at node 1, expected 0 to 7")));
-}
-
-TEST(Program, TellsWarningsAndRuns) {
-  const auto folder = fresh_folder();
-  json scene = shipped("bouncing_ball");
-  scene["output"]["every"] = 5000;
-  const std::string file = written(scene, folder);
-  EXPECT_THAT(run_program("run " + file + " --out " + folder.string()),
-              Exits(0, StartsWith("ilaw: " + file + ": warning: /output/every: found 5000")));
-  EXPECT_EQ(json_of(folder / "summary.json")["warnings"].size(), 1U);
-}
-
 // A pipe whose reader has gone is an output that cannot be written, no end by a signal.
 TEST(Program, SaysThatItsReaderHasLeft) {
   const std::string folder = fresh_folder().string(),
@@ -193,25 +144,6 @@ TEST(Program, SaysThatItsReaderHasLeft) {
                                       folder + " 2>&3; echo code $? >&3) | true)");
   EXPECT_THAT(outcome.output, HasSubstr("ilaw: standard output: cannot be written"));
   EXPECT_THAT(outcome.output, HasSubstr("code 1\n"));
-}
-
-// Fields that an earlier run left and this one does not replace would be taken for its own.
-TEST(Program, RemovesTheFieldsOfAnEarlierRun) {
-  const auto folder = fresh_folder();
-  json scene = shipped("bouncing_ball");
-  const std::string file = (folder / "scene.json").string(),
-                    command = "run " + file + " --out " + folder.string();
-  scene["output"]["fields"] = 1000;
-  std::ofstream(file) << scene.dump();
-  ASSERT_EQ(run_program(command).code, 0);
-  ASSERT_TRUE(fs::exists(folder / "fields_000002.vtu"));
-  std::ofstream(folder / "fields_of_mine.vtu") << "mine";
-  scene["output"].erase("fields");
-  std::ofstream(file) << scene.dump();
-  ASSERT_EQ(run_program(command).code, 0);
-  EXPECT_FALSE(fs::exists(folder / "fields.vtu.series"));
-  EXPECT_FALSE(fs::exists(folder / "fields_000002.vtu"));
-  EXPECT_TRUE(fs::exists(folder / "fields_of_mine.vtu"));
 }
 
 // As nohup starts it.
@@ -378,14 +310,5 @@ TEST(Program, DescribesWithoutRunningTheLibrary) {
   fs::remove_all(folder);
 }
 
-// Columns stand below each other, however long a name is.
-TEST(Program, AlignsColumns) {
-  std::istringstream list(run_program("list").output);
-  std::set<std::size_t> files;
-  for (std::string line; std::getline(list, line);)
-    if (line.find("search path") != 0) files.insert(line.find("/"));
-  EXPECT_EQ(files.size(), 1U);
-}
-
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::program

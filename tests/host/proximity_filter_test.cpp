@@ -8,7 +8,7 @@
 #include <cstring>
 #include <new>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::proximity_filter {
 namespace {
 
 json with_all_active(json scene) {
@@ -172,4 +172,4 @@ TEST(Parallel, ThrowsHereWhatAWorkerThrows) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::proximity_filter

@@ -138,15 +138,5 @@ TEST(Warnings, AreNotForTheShippedScenes) {
   }
 }
 
-TEST(Scene, TakesInfinityTablesAndValuesPerNode) {
-  for (const char* friction :
-       {"\"inf\"", "{\"table\": [[0, 0.1], [1, 0.5]]}", "{\"per_node\": [0.1, \"inf\"]}"}) {
-    json scene = good_scene();
-    scene["interfaces"][0]["parameters"]["friction"] = json::parse(friction);
-    auto [read, integrator] = simulation_of(scene);
-    EXPECT_NO_THROW(while (integrator.steps() < read.steps) integrator.step());
-  }
-}
-
 }  // namespace
 }  // namespace ilaw::host::testing

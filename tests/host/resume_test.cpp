@@ -3,7 +3,7 @@
 
 #include "base/csv.hpp"
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::resume {
 namespace {
 
 json short_memory() { return shipped("postit_test3"); }
@@ -120,4 +120,4 @@ TEST(Resume, KeepsSumsWithOtherColumns) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::resume

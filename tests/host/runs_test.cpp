@@ -8,7 +8,7 @@
 #include <csignal>
 #include <thread>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::runs {
 namespace {
 
 std::vector<std::vector<std::string>> rows_of(const std::string& text) {
@@ -281,4 +281,4 @@ TEST(Refusals, OfARunThatDivergesNameAStepThatIsStable) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::runs

@@ -1,7 +1,7 @@
 // Nodes by name, by place and by box: what a scene may say of nodes, wherever it names some.
 #include "host_runner.hpp"
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::scene_sets {
 namespace {
 
 // A cube of 4 x 4 x 2 elements, pulled at one corner region, held at another, dropped on a plane.
@@ -88,4 +88,4 @@ TEST(ScenesPage, BeginsWithASceneThatDoesWhatItSays) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::scene_sets

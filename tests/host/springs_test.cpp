@@ -3,7 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::springs {
 namespace {
 
 json two_masses(double stiffness, double damping) {
@@ -37,29 +37,6 @@ TEST(Spring, SwingsAboutItsRestLength) {
     }
     EXPECT_LT(integrator.energy().balance_error, 1e-13) << "h " << h;
   }
-}
-
-// exp(-c t/m), to the first order of the step; what is lost is the work of damping.
-TEST(Damper, SlowsDownExponentially) {
-  constexpr double c = 0.5, end = 1.2;
-  std::vector<double> steps, errors;
-  for (const double h : {0.04, 0.03, 0.007}) {
-    json source = two_masses(0.0, c);
-    source["time"] = {{"dt", h}, {"end", end}};
-    auto [scene, integrator] = simulation_of(source);
-    const double before = integrator.energy().kinetic;
-    while (integrator.steps() < scene.steps) integrator.step();
-    const Dofs& v = integrator.velocity();
-    const double time = integrator.time() + 0.5 * h;
-    steps.push_back(h);
-    errors.push_back(std::abs(v[1] - v[0] + 0.4 * std::exp(-c * time / reduced_mass)));
-    EXPECT_NEAR(v[0] + 3.0 * v[1], 0.0, 1e-15) << "h " << h;
-    EXPECT_NEAR(integrator.energy().damping_work, integrator.energy().kinetic - before, 1e-15) << "h " << h;
-    EXPECT_LT(integrator.energy().balance_error, 1e-13) << "h " << h;
-    EXPECT_EQ(integrator.energy().external_work, 0.0) << "h " << h;
-  }
-  EXPECT_LT(errors[0], 0.4 * steps[0]);
-  EXPECT_NEAR(order(steps, errors), 1.0, 0.1);
 }
 
 // Each step takes h c/m of the speed before it, and the half step to the first velocity half of that.
@@ -217,4 +194,4 @@ TEST(SpringsCriticalStep, CountsTheBody) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::springs

@@ -1,7 +1,7 @@
 // Blocks on blocks, with meshes that match or not, and the border of a surface.
 #include "run_result.hpp"
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::stacked {
 namespace {
 
 // Block b on block a of a unit square, each of a height, that meet from one side or both.
@@ -22,36 +22,6 @@ std::vector<double> pressures_on(const char* name, const Scene& scene, const Dof
   for (std::size_t k = 0; k < face.nodes.size(); ++k)
     pressures.push_back(std::abs(impulse[3 * face.nodes[k] + 2]) / face.areas[k]);
   return pressures;
-}
-
-// Two equal blocks without lateral strain, 5x5 on 3x3 elements, that meet at full speed: a plane wave runs
-// into each. Impulses of the interface over area and step at the nodes of a face, over rho c v.
-std::vector<double> pressures_of_a_plane_wave(bool both_sides) {
-  json source = stacked_blocks(0.5, {3, 3, 10}, {5, 5, 10}, elastic(1, 0, 1), both_sides);
-  source["model"]["blocks"][0]["velocity"] = {0, 0, 1};
-  source["model"]["blocks"][1]["velocity"] = {0, 0, -1};
-  source["time"] = {{"dt", 0.04}, {"end", 0.2}};
-  auto [scene, integrator] = simulation_of(source);
-  integrator.set_tolerance(1e-14);
-  integrator.start();
-  Dofs impulse = integrator.interface_impulse();
-  while (integrator.steps() < scene.steps) {
-    integrator.step();
-    impulse += integrator.interface_impulse();
-  }
-  EXPECT_EQ(integrator.tally().unconverged, 0);
-  EXPECT_LE(integrator.energy().balance_error, 1e-12);
-  std::vector<double> pressures = pressures_on("b.z_min", scene, impulse);
-  std::sort(pressures.begin(), pressures.end());
-  return pressures;
-}
-
-// The patch test: nodes that share their facets' impulses by weights alone do not bear a uniform pressure.
-TEST(NonMatchingMeshes, BearAUniformPressureFromBothSides) {
-  const std::vector<double> both = pressures_of_a_plane_wave(true), one = pressures_of_a_plane_wave(false);
-  EXPECT_NEAR(both.front() / both.back(), 1.0, 1e-12) << both.back();
-  EXPECT_NEAR(one.front() / one.back(), 0.812, 0.001) << "one side alone fails it";
-  EXPECT_GT(both.front(), 0.0);
 }
 
 // A block on another with a different mesh, in contact from both sides, under a pressure that grows until
@@ -101,15 +71,6 @@ TEST(NonMatchingMeshes, ShareAreasBetweenBothSides) {
       EXPECT_NEAR(area, 0.5, 1e-15) << interface->name();
     }
   }
-}
-
-TEST(NonMatchingMeshes, AskForTwoFaces) {
-  json source = stacked_blocks(1, {1, 1, 1}, {1, 1, 1}, elastic(1, 0, 1));
-  source["time"] = {{"cfl", 0.5}, {"end", 0.1}};
-  EXPECT_EQ(refusal_of(source), "not refused");
-  source["interfaces"][0]["nodes"] = {8, 9};
-  EXPECT_EQ(refusal_of(source),
-            "/interfaces/0/nodes: found a list, expected a surface, which its other side meets");
 }
 
 // The shipped patch test: all nodes bear p times their area from both sides. The loaded face grows by the
@@ -202,4 +163,4 @@ TEST(SettledStack, RestsOnItsFloorAndIsShaken) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::stacked

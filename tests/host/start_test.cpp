@@ -1,7 +1,7 @@
 // The start of a run: bodies that rest or are bonded carry their load from time 0 on.
 #include "run_result.hpp"
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::start {
 namespace {
 
 // A point at rest on a floor stays where it is, under its weight from time 0 on, whatever the rigid law and
@@ -89,21 +89,6 @@ TEST(Start, ImpactsAtAGapOfZeroAreExact) {
       }
 }
 
-// A floor that moves from time 0 on takes a body along that rides on it, at any restitution: it makes no
-// impact.
-TEST(Start, MovingFloorCarriesItsBody) {
-  for (const double e : {0.0, 1.0})
-    for (const double h : coprime_steps) {
-      GIVEN(e, h);
-      json source = resting_point("contact", {{"restitution", e}}, h);
-      source["model"]["points"][0]["velocity"] = {0, 0.3};
-      source["interfaces"][0]["obstacle"]["velocity"] = {0, 0.3};
-      const Ran run = ran(source);
-      for (std::size_t k = 0; k < run.rows(); ++k) EXPECT_NEAR(run["n0.u1"][k], 0.3 * run["time"][k], 1e-15);
-      EXPECT_NEAR(run.summary["forces"]["floor"]["largest"].get<double>(), 10.0, 1e-15 / (h * h));
-    }
-}
-
 // A fault that ends a run does so at time 0, too.
 TEST(Start, FailsAsAnyStepDoes) {
   json source = resting_point("contact", {}, 1e-2);
@@ -127,4 +112,4 @@ TEST(Summary, HasFirstContactAndTheTimeOfThePeak) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::start

@@ -8,45 +8,8 @@
 
 #include <vtkCellData.h>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::stress_field {
 namespace {
-
-// Displacements u = (F - 1) x.
-Dofs affine(const Model& model, const Eigen::Matrix3d& F) {
-  Dofs u(model.position().size());
-  for (Eigen::Index i = 0; i < u.size(); i += 3)
-    u.segment<3>(i) = (F - Eigen::Matrix3d::Identity()) * model.position().segment<3>(i);
-  return u;
-}
-
-Eigen::Matrix3d some_gradient(double size) {
-  Eigen::Matrix3d F;
-  F << 0.3, -0.1, 0.2, 0.25, -0.35, 0.05, -0.15, 0.3, 0.1;
-  return Eigen::Matrix3d::Identity() + size * F;
-}
-
-// Hooke's law of the symmetric gradient; Cauchy's stress mu (b - 1) / J + lambda ln J / J (Bonet and Wood
-// 2008, eq. 6.29). Where every point has the same F, mean dilatation changes nothing.
-TEST(Stress, OfAHomogeneousDeformationIsTheClosedForm) {
-  const double mu = 0.5 * 2e6 / 1.3, lambda = 2e6 * 0.3 / (1.3 * 0.4);
-  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
-  for (const double size : {1e-3, 0.3, 1.0}) {
-    const Eigen::Matrix3d F = some_gradient(size), strain = 0.5 * (F + F.transpose()) - one;
-    const double J = F.determinant();
-    const Eigen::Matrix3d hooke = 2.0 * mu * strain + lambda * strain.trace() * one,
-                          cauchy = (mu * (F * F.transpose() - one) + lambda * std::log(J) * one) / J;
-    for (const char* element : {"full", "mean_dilatation"})
-      for (const auto& [material, expected] :
-           {std::pair{"linear", hooke}, std::pair{"neo_hookean", cauchy}}) {
-        const Scene scene = scene_of(block_of(material, element));
-        const auto stresses = scene.model->stresses(affine(*scene.model, F));
-        ASSERT_EQ(stresses.size(), 6U) << "size " << size;
-        for (const Eigen::Matrix3d& stress : stresses)
-          EXPECT_LE((stress - expected).norm(), 1e-9 * expected.norm())
-              << material << ", " << element << ", size " << size;
-      }
-  }
-}
 
 // A rod's tension over its section; only along x.
 TEST(Stress, OfABarIsItsTension) {
@@ -85,4 +48,4 @@ TEST(Stress, StandsInTheFields) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::stress_field

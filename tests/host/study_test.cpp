@@ -4,7 +4,7 @@
 #include "study/study_laws.hpp"
 #include "study/work_precision.hpp"
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::study {
 namespace {
 
 json plane(const std::vector<double>& normal) {
@@ -191,43 +191,6 @@ TEST(Study, OfTheBallTellsOrderAndCost) {
   EXPECT_LE(laws["laws"][2]["largest_stable_step"].get<double>(), 0.02 * 1.01);
 }
 
-// Impulse and work so far, and positions, of both components, against the closed form.
-TEST(Study, OfTheObliqueImpactIsOfFirstOrderInAllNorms) {
-  const Result study = study_of(shipped("oblique_impact"),
-                                "--law coulomb:'{\"restitution\": 0.5, \"friction\": 0.3}' --levels 10");
-  ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
-  std::map<std::string, std::vector<double>> table;
-  for (auto& row : rows_of(study.folder / "study.csv"))
-    for (const char* column : {"dt", "u_L2", "v_L1", "impulse", "energy"})
-      table[column].push_back(std::stod(row[column]));
-  for (const char* norm : {"u_L2", "v_L1", "impulse", "energy"}) {
-    EXPECT_NEAR(order(table["dt"], table[norm]), 1.05, 0.35) << norm;
-    EXPECT_LT(table[norm].back(), 5e-3) << norm;
-  }
-}
-
-// The scene's own list, shortened: contact's velocities converge over three periods, those of a spring
-// of ten elements do not.
-TEST(Study, OfTheHeldRodTellsContactFromAStiffSpring) {
-  json scene = shipped("held_rod");
-  const json laws = scene["study"]["laws"];
-  scene["study"]["laws"] = {laws[0], laws[4]};
-  const Result study = study_of(scene, "--levels 7");
-  ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
-  std::map<std::string, std::map<std::string, std::vector<double>>> table;
-  for (auto& row : rows_of(study.folder / "study.csv"))
-    for (const char* column : {"dt", "u_L2", "v_L1", "penetration"})
-      table[row["law"]][column].push_back(std::stod(row[column]));
-  ASSERT_EQ(table.size(), 2U);
-  auto& contact = table["contact predictive"];
-  auto& spring = table["explicit k=20"];
-  EXPECT_NEAR(order(contact["dt"], contact["u_L2"]), 0.85, 0.15);
-  EXPECT_LT(contact["v_L1"].back(), 0.5 * contact["v_L1"].front());
-  EXPECT_GT(spring["v_L1"].back(), 0.4);
-  EXPECT_LT(contact["penetration"].back(), 1e-15);
-  EXPECT_GT(spring["penetration"].back(), 1e-3);
-}
-
 // Without exact solution and without a list: the usual laws, against the first one's finest run.
 TEST(Study, TakesTheUsualLawsWhereTheSceneListsNone) {
   json scene = ball();
@@ -298,4 +261,4 @@ TEST(Study, EndsWithTheSceneThatFails) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::study

@@ -5,7 +5,7 @@
 
 #include <chrono>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::summary {
 namespace {
 
 // A scene of one mass that slides on a floor, under the law.
@@ -155,4 +155,4 @@ TEST(Summary, TellsHowCoupledContactsConverged) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::summary

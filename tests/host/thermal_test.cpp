@@ -10,12 +10,8 @@
 #include <numbers>
 #include <sstream>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::thermal {
 namespace {
-
-using nlohmann::json;
-
-using nlohmann::json;
 
 // ---- conduction -----------------------------------------------------------------------------------------
 
@@ -24,9 +20,7 @@ TEST(Thermal, ConductsALinearProfile) {
   for (const double fraction : step_fractions) {
     json scene = scene_with({column(bar, "bar", 0)}, fraction * bar.stable_step(), 40.0 / bar.conductivity);
     scene["loads"] = {held("bar.z_min", 400), held("bar.z_max", 280)};
-    Scene read = scene_of(scene.dump());
-    Integrator integrator = integrator_of(read);
-    run(integrator, read.steps);
+    auto [read, integrator] = run_to_end(scene);
     for (int node = 0; node < read.model->node_count(); ++node)
       EXPECT_NEAR(integrator.temperatures()->at(node), 400 - 120 * read.model->position()[3 * node + 2],
                   1e-10);
@@ -42,9 +36,7 @@ TEST(Thermal, HoldsNodesAtATableOverTime) {
     json scene = scene_with({column(bar, "bar", 0)}, dt, 1.0);
     scene["loads"] = {held("bar.z_min", 300)};
     scene["loads"][0]["history"] = {{0, 300}, {4, 380}};
-    Scene read = scene_of(scene.dump());
-    Integrator integrator = integrator_of(read);
-    run(integrator, read.steps);
+    auto [read, integrator] = run_to_end(scene);
     EXPECT_NEAR(integrator.temperatures()->at(0), 300 + 20 * thermal_time(integrator, dt), 1e-10);
     EXPECT_LT(integrator.temperatures()->report().balance_error, 1e-12);
   }
@@ -58,9 +50,7 @@ TEST(Thermal, ConductsAFluxThroughABar) {
     json scene = scene_with({column(bar, "bar", 0)}, dt, 200.0 / bar.conductivity);
     scene["loads"] = {held("bar.z_min", 290),
                       {{"type", "heat_flux"}, {"nodes", "bar.z_max"}, {"history", {{0, 6}}}}};
-    Scene read = scene_of(scene.dump());
-    Integrator integrator = integrator_of(read);
-    run(integrator, read.steps);
+    auto [read, integrator] = run_to_end(scene);
     for (int node = 0; node < read.model->node_count(); ++node)
       EXPECT_NEAR(integrator.temperatures()->at(node), 290 + 20 * read.model->position()[3 * node + 2], 1e-9);
     EXPECT_LT(integrator.temperatures()->report().balance_error, 1e-11);
@@ -77,9 +67,7 @@ TEST(Thermal, HeatsAHalfSpaceBySecondOrder) {
     const double dt = bar.stable_step();
     json scene = scene_with({column(bar, "bar", 0)}, dt, end);
     scene["loads"] = {{{"type", "heat_flux"}, {"nodes", "bar.z_max"}, {"history", {{0, flux}}}}};
-    Scene read = scene_of(scene.dump());
-    Integrator integrator = integrator_of(read);
-    run(integrator, read.steps);
+    auto [read, integrator] = run_to_end(scene);
     const double expected =
         2 * flux * std::sqrt(thermal_time(integrator, dt) / std::numbers::pi) / bar.effusivity();
     sizes.push_back(bar.size());
@@ -112,9 +100,7 @@ TEST(Thermal, ConductsALinearProfileThroughAMesh) {
     const double stable = scene_of(scene.dump()).model->thermal()->stable_step().step;
     for (const double fraction : step_fractions) {
       scene["time"]["dt"] = fraction * stable;
-      Scene read = scene_of(scene.dump());
-      Integrator integrator = integrator_of(read);
-      run(integrator, read.steps);
+      auto [read, integrator] = run_to_end(scene);
       for (int node = 0; node < read.model->node_count(); ++node)
         EXPECT_NEAR(integrator.temperatures()->at(node), 400 - 120 * read.model->position()[3 * node], 1e-9);
     }
@@ -140,9 +126,7 @@ TEST(Thermal, BringsTwoPointsToTheirEquilibrium) {
                             {"parameters", {{"conductance", 0.5}, {"conductance_per_pressure", 0.1}}},
                             {"nodes", {0}},
                             {"against", {{"nodes", {1}}, {"normal", {1}}}}}};
-    Scene read = scene_of(scene.dump());
-    Integrator integrator = integrator_of(read);
-    run(integrator, read.steps);
+    auto [read, integrator] = run_to_end(scene);
     const double decay = std::exp(-(0.5 + 0.1 * 7) * thermal_time(integrator, dt) * (1.0 / 6 + 1.0 / 2));
     const double mean = (6 * 350.0 + 2 * 280.0) / 8;
     EXPECT_NEAR(integrator.temperatures()->at(0), mean + 2.0 / 8 * 70 * decay, 1e-11);
@@ -151,38 +135,6 @@ TEST(Thermal, BringsTwoPointsToTheirEquilibrium) {
     EXPECT_NEAR(heat.stored, 0.0, 1e-11);
     EXPECT_EQ(heat.friction, 0.0);
   }
-}
-
-// One mass between several: each contact has a part of its capacity.
-TEST(Thermal, SharesANodeBetweenContacts) {
-  for (const int others : {3, 4})
-    for (const double dt : {0.13, 0.031, 0.0077}) {
-      json scene = {{"model", {{"type", "points"}, {"dimension", 1}}}, {"time", {{"dt", dt}, {"end", 2.0}}}};
-      scene["interfaces"] = scene["loads"] = json::array();
-      for (int k = 0; k <= others; ++k) {
-        const json thermal = {{"specific_heat", 3}, {"initial_temperature", k == 0 ? 400 : 300}};
-        scene["model"]["points"].push_back({{"mass", 2}, {"position", {0}}, {"thermal", thermal}});
-        scene["loads"].push_back({{"type", "force"},
-                                  {"nodes", {k}},
-                                  {"direction", {k == 0 ? -others : 1}},
-                                  {"history", {{0, 7}}}});
-        if (k == 0) continue;
-        scene["interfaces"].push_back({{"law", "conductance"},
-                                       {"parameters", {{"conductance", 1e12}}},
-                                       {"nodes", {0}},
-                                       {"against", {{"nodes", {k}}, {"normal", {1}}}}});
-      }
-      Scene read = scene_of(scene.dump());
-      Integrator integrator = integrator_of(read);
-      for (int n = 0; n < 15; ++n) {
-        integrator.step();
-        const HeatReport heat = integrator.temperatures()->report();
-        ASSERT_GT(heat.lowest, 300 - 1e-9) << others << " " << dt << " step " << n;
-        ASSERT_LT(heat.highest, 400 + 1e-9);
-        ASSERT_LT(heat.balance_error, 1e-13);
-      }
-      EXPECT_NEAR(integrator.temperatures()->at(0), 300 + 100.0 / (others + 1), 0.2);
-    }
 }
 
 // Carslaw, Jaeger 1959, section 2.14: the surfaces of two half spaces that touch are at the mean of their
@@ -196,9 +148,7 @@ TEST(Thermal, HoldsTheTemperatureOfTwoHalfSpaces) {
     const Bar above{.specific_heat = 1.0, .conductivity = 0.5, .temperature = 300, .elements = elements};
     const double dt = std::min(below.stable_step(), above.stable_step());
     const json law = {{"law", "conductance"}, {"parameters", {{"conductance", 1e12}}}};
-    Scene read = scene_of(two_columns(below, above, dt, 0.05, law).dump());
-    Integrator integrator = integrator_of(read);
-    run(integrator, read.steps);
+    auto [read, integrator] = run_to_end(two_columns(below, above, dt, 0.05, law));
     const double expected =
         (below.effusivity() * 400 + above.effusivity() * 300) / (below.effusivity() + above.effusivity());
     errors.push_back(std::abs(integrator.temperatures()->at(read.interfaces[0]->nodes()[0]) - expected));
@@ -223,9 +173,7 @@ TEST(Thermal, ExchangesHeatWithinAFacet) {
                         {{"type", "motion"}, {"nodes", "above"}, {"axes", {0, 1}}},
                         {{"type", "gravity"}, {"acceleration", {0, 0, -0.01}}}};
       scene["interfaces"][0]["nodes"] = {8};
-      Scene read = scene_of(scene.dump());
-      Integrator integrator = integrator_of(read);
-      run(integrator, read.steps);
+      auto [read, integrator] = run_to_end(scene);
       const Dofs& capacity = read.model->thermal()->capacity();
       const std::array weights{(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
       double yielding = 0.0;  // 1/C of the facet
@@ -249,8 +197,7 @@ TEST(Thermal, IsStableWithAnyConductance) {
     for (const double fraction : step_fractions) {
       const double dt = fraction * above.stable_step();
       const json law = {{"law", "conductance"}, {"parameters", {{"conductance", conductance}}}};
-      Scene read = scene_of(two_columns(below, above, dt, 200 * dt, law).dump());
-      Integrator integrator = integrator_of(read);
+      auto [read, integrator] = simulation_of(two_columns(below, above, dt, 200 * dt, law));
       for (int n = 0; n < 200; ++n) {
         integrator.step();
         const HeatReport heat = integrator.temperatures()->report();
@@ -271,8 +218,7 @@ TEST(Thermal, IsStableWhereBothSidesAct) {
     scene["model"]["blocks"][0]["elements"] = {2, 2, below.elements};
     scene["model"]["blocks"][1]["elements"] = {3, 3, above.elements};
     for (json& block : scene["model"]["blocks"]) block["thermal"]["conductivity"] = 0;
-    Scene read = scene_of(scene.dump());
-    Integrator integrator = integrator_of(read);
+    auto [read, integrator] = simulation_of(scene);
     for (int n = 0; n < 50; ++n) {
       integrator.step();
       const HeatReport heat = integrator.temperatures()->report();
@@ -303,9 +249,7 @@ json sliding_point(double dt, double partition) {
 TEST(Thermal, StopsABlockByItsHeat) {
   for (const double dt : {0.013, 0.0031, 0.00071})
     for (const double partition : {0.0, 0.25, 1.0}) {
-      Scene read = scene_of(sliding_point(dt, partition).dump());
-      Integrator integrator = integrator_of(read);
-      run(integrator, read.steps);
+      auto [read, integrator] = run_to_end(sliding_point(dt, partition));
       EXPECT_NEAR(integrator.temperatures()->at(0), 290 + partition * 1.6, 1e-12);
       const HeatReport heat = integrator.temperatures()->report();
       EXPECT_NEAR(heat.stored, partition * 16, 1e-12);
@@ -314,26 +258,6 @@ TEST(Thermal, StopsABlockByItsHeat) {
       EXPECT_LT(heat.balance_error, 1e-13);
       EXPECT_LT(integrator.energy().balance_error, 1e-13);
     }
-}
-
-// A block that is held over a belt: mu N v t, from rest of the belt on, in both sides.
-TEST(Thermal, HeatsABlockOverABelt) {
-  for (const double dt : {0.013, 0.0031, 0.00071}) {
-    json scene = sliding_point(dt, 0.25);
-    scene["model"]["points"][0]["velocity"] = {0, 0};
-    scene["loads"].push_back({{"type", "motion"}, {"nodes", "all"}, {"axes", {0}}});
-    scene["interfaces"][0]["obstacle"]["velocity"] = {3, 0};
-    Scene read = scene_of(scene.dump());
-    Integrator integrator = integrator_of(read);
-    run(integrator, read.steps);
-    const HeatReport heat = integrator.temperatures()->report();
-    // The belt starts within the first half step, whose mean speed is 3/2.
-    const double expected = 0.3 * 20 * 3 * integrator.time();
-    EXPECT_NEAR(heat.friction, expected, 0.3 * 20 * 3 * 0.5 * dt + 1e-12);
-    EXPECT_NEAR(heat.friction, integrator.energy().by_law[ILAW_ENERGY_FRICTION], 1e-11);
-    EXPECT_NEAR(heat.obstacles, 0.75 * heat.friction, 1e-11);
-    EXPECT_NEAR(integrator.temperatures()->at(0), 290 + 0.25 * heat.friction / 10, 1e-11);
-  }
 }
 
 // A block in 3D that slides over another: the law's shares reach both, and conduction spreads them.
@@ -348,9 +272,7 @@ TEST(Thermal, SharesFrictionBetweenTwoBlocks) {
                               {"direction", {1, 0, 0}},
                               {"total", true},
                               {"history", {{0, 0}, {0.01, 3e-4}, {0.4, 3e-4}, {0.41, 0}}}});
-    Scene read = scene_of(scene.dump());
-    Integrator integrator = integrator_of(read);
-    run(integrator, read.steps);
+    auto [read, integrator] = run_to_end(scene);
     double share = 0.0;
     for (const int node : read.model->sets().at("above").nodes)
       share += read.model->thermal()->capacity()[node] * integrator.temperatures()->at(node);
@@ -366,41 +288,13 @@ TEST(Thermal, SharesFrictionBetweenTwoBlocks) {
 
 // ---- the host -------------------------------------------------------------------------------------------
 
-// The block of docs/results/tyre_block.md.
-TEST(Thermal, HeatsTheShippedTyreBlock) {
-  json scene = read_scene_source(scene_files::named("tyre_block.json"));
-  std::vector<double> rises;
-  for (const double cfl : {0.9, 0.57, 0.31}) {
-    scene["time"]["cfl"] = cfl;
-    Scene read = scene_of(scene.dump());
-    Integrator integrator = integrator_of(read);
-    run(integrator, read.steps);
-    const HeatReport heat = integrator.temperatures()->report();
-    EXPECT_NEAR(heat.friction / integrator.energy().by_law[ILAW_ENERGY_FRICTION], 1.0, 1e-12);
-    EXPECT_NEAR(heat.obstacles / heat.friction, 0.66, 1e-12);
-    EXPECT_LT(heat.balance_error, 1e-11);
-    EXPECT_LT(integrator.energy().balance_error, 1e-11);
-    // The surface of a half space under the mean flux; friction changes by a few percent as it heats.
-    const double flux = heat.stored / 4e-4 / integrator.time();
-    double rise = 0.0;
-    for (const int node : read.interfaces[0]->nodes())
-      rise += 0.25 * (integrator.temperatures()->at(node) - 293.0);
-    EXPECT_NEAR(rise / (2 * flux * std::sqrt(integrator.time() / (std::numbers::pi * 0.25 * 1150 * 1800))),
-                1.0, 0.05);
-    rises.push_back(rise);
-  }
-  EXPECT_NEAR(rises[0] / rises[2], 1.0, 0.01);
-  EXPECT_NEAR(rises[1] / rises[2], 1.0, 0.01);
-}
-
 // A failed run reports its last complete step.
 TEST(Thermal, TakesBackAStepThatOverflows) {
   const Bar bar{.specific_heat = 0.01, .conductivity = 1e-6};
   json scene = scene_with({column(bar, "bar", 0)}, 0.01, 1.0);
   scene["loads"] = {
       {{"type", "heat_flux"}, {"nodes", "bar.z_max"}, {"history", {{0, 1}, {0.045, 1}, {0.05, 1e308}}}}};
-  Scene read = scene_of(scene.dump());
-  Integrator integrator = integrator_of(read);
+  auto [read, integrator] = simulation_of(scene);
   HeatReport before;
   EXPECT_THROW(
       for (int n = 0; n < 100; ++n) {
@@ -510,4 +404,4 @@ TEST(Thermal, WarnsOfATemperatureThatNoLawReads) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::thermal

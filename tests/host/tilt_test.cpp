@@ -5,7 +5,7 @@
 
 #include <functional>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::tilt {
 namespace {
 
 constexpr double fall = 10.0, rate = 0.2;
@@ -86,46 +86,6 @@ TEST(Tilt, CarriesWhatSticks) {
     }
 }
 
-// A sliding point leaves the plane by no more than the second order of the step.
-TEST(Tilt, KeepsWhatSlidesOnThePlane) {
-  std::vector<double> steps, depths;
-  for (const double dt : {0.02, 0.0137, 0.0091, 0.0059}) {
-    auto [scene, integrator] = simulation_of(on_plane(2, 0.8, 0.0, dt).dump());
-    double deepest = 0.0;
-    while (integrator.time() < 1.0) {
-      integrator.step();
-      deepest = std::max(
-          deepest, std::abs(scene.interfaces[0]->gap_at(0, integrator.displacement(), integrator.time())));
-    }
-    steps.push_back(dt);
-    depths.push_back(deepest);
-  }
-  EXPECT_GT(order(steps, depths), 1.8);
-  EXPECT_LT(depths.back(), 1e-4);
-}
-
-// The gap is the distance to the plane through the point, with the normal turned about the axis.
-TEST(Tilt, GapAndNormalAreThoseOfTheAngle) {
-  const json source = on_plane(3, 0.8, 0.3, 0.01);
-  Scene scene = scene_of(source);
-  const Counterpart& plane = *scene.interfaces[0]->setup().counterpart;
-  for (const double time : {0.0, 1.3, 2.9}) {
-    const Eigen::Vector3d normal =
-        Eigen::AngleAxisd(rate * time, Eigen::Vector3d::UnitZ()) * Eigen::Vector3d::UnitY();
-    const Dofs u = Eigen::Vector3d(0.3, 0.7, -0.2);
-    const ContactPoint found = plane.contact_point(0, u, time);
-    EXPECT_LT((found.normal - normal).norm(), 1e-15);
-    EXPECT_LT((plane.obstacle()->turned(Eigen::Vector3d::UnitY(), 0.0, time) - normal).norm(), 1e-15);
-    EXPECT_NEAR(found.gap, (Eigen::Vector3d(1.8, 0.5, 3) + u - Eigen::Vector3d(1, 0.5, -2)).dot(normal),
-                1e-15);
-  }
-  // In 2D as well.
-  Scene flat = scene_of(on_plane(2, 0.8, 0.3, 0.01).dump());
-  const Vector turned =
-      flat.interfaces[0]->setup().counterpart->obstacle()->turned(Eigen::Vector2d(1, 0), 0.0, 1.3);
-  EXPECT_LT((turned - Eigen::Vector2d(std::cos(rate * 1.3), std::sin(rate * 1.3))).norm(), 1e-15);
-}
-
 // A plane that swings up to a point far from its axis finds it, with and without the filter, to the same
 // bits.
 TEST(Tilt, IsNotMissedByTheFilter) {
@@ -165,23 +125,5 @@ TEST(Tilt, MemoryTurnsWithThePlane) {
   }
 }
 
-// The shipped scene: an elastic block sticks, then slides as a whole at tan(angle) = 0.4, at 2.2903.
-TEST(Tilt, BlockSlidesAtTheAngleOfItsFriction) {
-  for (const double cfl : {0.7, 0.53, 0.31}) {
-    json source = shipped("tilting_plane");
-    source["time"]["cfl"] = cfl;
-    auto [scene, integrator] = simulation_of(source);
-    const Eigen::Index middle = 3 * scene.output.watch.at(0);
-    double slid_at = 0.0;
-    while (integrator.steps() < scene.steps) {
-      integrator.step();
-      if (slid_at == 0.0 && integrator.displacement()[middle] > 1e-5) slid_at = integrator.time();
-    }
-    EXPECT_NEAR(slid_at, 2.2903, 0.02) << cfl;
-    EXPECT_GT(integrator.displacement()[middle], 5e-3) << cfl;
-    EXPECT_LT(integrator.energy().balance_error, 1e-11) << cfl;
-  }
-}
-
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::tilt

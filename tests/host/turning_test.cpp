@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <complex>
 
-namespace ilaw::host::testing {
+namespace ilaw::host::testing::turning {
 namespace {
 
 // A wheel of radius 0.5 about (1, 2), or a sphere or a table there, turning so that its top moves by speed
@@ -103,35 +103,6 @@ TEST(TurningObstacle, RollsWithoutSliding) {
   }
 }
 
-// Rough enough, a turntable carries a point around. Its velocity in a step is that of the table where the
-// step begins, so that r^2 grows by 1 + (w h)^2 from step to step: a circle to the first order.
-TEST(TurningObstacle, CarriesAPointAround) {
-  constexpr double w = 1.5, r = 0.8;
-  for (const double h : {0.01, 0.013, 0.0037}) {
-    json source = json::parse(R"({"model": {"type": "points", "dimension": 3, "points": [
-        {"mass": 1, "position": [1.8, 2, 0], "velocity": [0, 1.2, 0]}]}, "time": {"end": 2},
-      "loads": [{"type": "gravity", "acceleration": [0, 0, -10]}],
-      "interfaces": [{"law": "coulomb", "nodes": "all", "parameters": {"friction": 2},
-        "obstacle": {"type": "plane", "point": [1, 2, 0], "normal": [0, 0, 1], "angles": [[-1, 0], [9, 15]]}}]})");
-    source["time"]["dt"] = h;
-    Scene scene = scene_of(source);
-    Integrator integrator = integrator_of(scene);
-    integrator.step();
-    const auto arm = [&] {
-      return Eigen::Vector2d((scene.model->position() + integrator.displacement()).head<2>() -
-                             Eigen::Vector2d(1, 2));
-    };
-    const Eigen::Vector2d start = arm();
-    const double first = integrator.time();
-    EXPECT_NEAR(start.norm(), r, 2.0 * h) << "h " << h;
-    while (integrator.steps() < scene.steps) {
-      const Eigen::Vector2d there = Eigen::Rotation2Dd(w * (integrator.time() - first)) * start;
-      ASSERT_NEAR((arm() - there).norm(), 0.0, 1e-12) << h << ", " << integrator.steps();
-      integrator.step();
-    }
-  }
-}
-
 // A mass that a spring of stiffness k = 100 holds to a turntable, where both were at rest to each other. With
 // z = x + iy and turned by w = 2, z'' = -k (z - e^(iwt)), so that
 //     z = A e^(iwt) + (1 - A) (0.6 e^(10it) + 0.4 e^(-10it)),   A = k/(k - w^2).
@@ -189,26 +160,6 @@ INSTANTIATE_TEST_SUITE_P(
                  "friction": 1e6, "tangential_stiffness": 100}})",
              1e-3, 40.0, 50.0}));
 
-// Thrown at a turning cylinder from anywhere, with gravity: nothing is gained but what the wheel works.
-TEST(TurningObstacle, DissipatesRelativeToItsSurface) {
-  Random random(5);
-  json source = json::parse(R"({"model": {"type": "points", "dimension": 3}, "time": {"dt": 0.003, "end": 1},
-      "loads": [{"type": "gravity", "acceleration": [0, -10, 0]}],
-      "interfaces": [{"law": "coulomb", "nodes": "all", "parameters": {"friction": 0.4},
-        "obstacle": {"type": "cylinder", "point": [0, 0, 0], "axis": [0.2, 0.1, 1], "radius": 0.5,
-                     "angles": [[0, 0], [0.3, 2], [0.5, -1]], "velocity": [0, 0.5, 0]}}]})");
-  for (int k = 0; k < 30; ++k)
-    source["model"]["points"].push_back({{"mass", 1.0 + 0.5 * random()},
-                                         {"position", {0.3 * random(), 0.8 + 0.1 * random(), random()}},
-                                         {"velocity", {random(), random() - 1.0, random()}}});
-  auto [scene, integrator] = run_to_end(source);
-  const EnergyReport energy = integrator.energy();
-  EXPECT_GT(energy.by_law[ILAW_ENERGY_FRICTION], 1.0);
-  EXPECT_NEAR(energy.reaction_work, 0.0, 1e-12 * energy.scale);
-  EXPECT_GE(energy.least_dissipation, 0.0);
-  EXPECT_LT(energy.balance_error, 1e-13);
-}
-
 // A point on a sphere that starts to spin. Alone, and with an interface out of reach, so that contacts are
 // solved together: as the start is faster than the bound on speeds, that step is solved more than once.
 json on_spinning_sphere(const json& interface, const json& gravity) {
@@ -261,4 +212,4 @@ TEST(TurningObstacle, LeavesNoTraceOfARefusedStep) {
 }
 
 }  // namespace
-}  // namespace ilaw::host::testing
+}  // namespace ilaw::host::testing::turning

@@ -65,12 +65,6 @@ def test_quantities_units_and_names_of_the_scene_are_on_the_axes(tmp_path):
     assert (results / "history.png").read_bytes()[1:4] == b"PNG"
 
 
-def test_without_units_there_are_no_brackets(tmp_path):
-    results = run(sliding(), tmp_path)
-    assert drawn(results, "velocity").get_ylabel() == "velocity"
-    assert drawn(results, "summed impulse").get_ylabel() == "summed impulse"
-
-
 def test_rounding_is_left_out_and_said(tmp_path):
     results = run(sliding(), tmp_path)
     read = Run(results)
@@ -92,12 +86,6 @@ def test_pull_of_the_window_breaks_the_bond_where_it_reaches_the_adhesion(tmp_pa
     assert S[S[:, 0] > 1.5][:, 1].max() == pytest.approx(0.4, rel=0.02)
     assert R[R[:, 0] > 1.67][:, 1].max() == 0.0
     assert [t.get_text() for t in axes.legend().get_texts()] == ["$R_Y$", "pull $S$"]
-
-
-def test_windows_begin_anew_behind_a_rupture():
-    broken = np.array([False, False, True, False, False])
-    assert windowed(np.ones(5), 2, broken).tolist() == [1, 2, 2, 1, 2]
-    assert windowed(np.ones(5), 1, broken).tolist() == [1] * 5
 
 
 def test_work_of_separation_is_the_toughness(tmp_path):
@@ -166,18 +154,6 @@ def test_rare_status_lies_on_top_and_ruptures_between_rows_are_drawn(tmp_path):
     assert [line.get_label() for line in axes.lines[1:]] == ["stick", "slip", "broken"]
 
 
-def test_many_nodes_are_an_envelope(tmp_path):
-    scene = sliding()
-    scene["model"]["points"] = [{"mass": 2, "position": [0, 0], "velocity": [0.05 * k or 2, 0]} for k in range(45)]
-    scene["output"]["watch"] = ["all"]
-    axes = drawn(run(scene, tmp_path), "velocity")
-    low, high = axes.collections[0].get_paths()[0].get_extents().get_points()[:, 1]
-    # The first step rubs off the starting half step's weight as well: 1.5 mu g h.
-    assert (low, high) == pytest.approx((0.0, 2.2 - 0.0075), abs=1e-9)
-    assert axes.lines[0].get_ydata()[0] == pytest.approx(0.05 * 23 - 0.0075, abs=1e-9)
-    assert axes.lines[0].get_label() == "median x of 45"
-
-
 def test_several_runs_have_a_legend_of_what_differs(tmp_path):
     for friction in (0.1, 0.4):
         scene = sliding()
@@ -210,21 +186,6 @@ def test_mistakes_are_told(tmp_path, arguments, said):
     done = plot(*arguments, cwd=tmp_path)
     assert done.returncode == 2 and said in done.stderr, done.stderr
     assert not list(tmp_path.glob("**/*.png"))
-
-
-def test_runs_without_a_common_column_are_refused(tmp_path):
-    for name, output in (("watched", {"watch": [0]}), ("summed", {"forces": ["floor"]})):
-        (tmp_path / name).mkdir()
-        run({**sliding(), "output": output}, tmp_path / name)
-    done = plot(*tmp_path.glob("*/results"))
-    assert done.returncode == 2 and "found no columns that all runs have" in done.stderr
-
-
-def test_panels_come_in_the_order_asked_for(tmp_path):
-    results = run(sliding(), tmp_path)
-    assert plot(results, "--panels", "force,displacement").returncode == 0
-    text = (results / "history.svg").read_text()
-    assert 0 < text.index(">force<") < text.index(">displacement<") and ">velocity<" not in text
 
 
 def test_pictures_are_whole_and_replace_links(tmp_path):
