@@ -33,6 +33,8 @@ class Contacts {
     return ends_[static_cast<std::size_t>(k) * ends() + e];
   }
   std::uint32_t ends() const { return static_cast<std::uint32_t>(layout_.ends); }
+  // Whether weights are integrated over several facets: a contact shares bodies with some 50 others.
+  bool is_integrated() const { return body_count_ + counterpart_count_ > 5; }
   // Whether the contact is open, cannot close at its present velocity, and starts without impulse, and the
   // law permits to leave it out.
   bool is_out_of_reach(std::int64_t k, const Bodies& bodies) const;

@@ -10,6 +10,7 @@
 #include "contacts.hpp"
 #include "team.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -25,6 +26,10 @@ struct Problem {
   std::vector<double> speeds;  // per contact, in the order of the blocks: the largest velocity it is given
 
   const Contacts& group(const Block& block) const { return groups[static_cast<std::size_t>(block.group)]; }
+  bool has_integrated() const {
+    return std::any_of(groups.begin(), groups.begin() + static_cast<std::ptrdiff_t>(group_count),
+                       [](const Contacts& group) { return group.is_integrated(); });
+  }
 };
 
 // Findings of an iteration.

@@ -184,6 +184,25 @@ json on_pedestal(double x, int elements_of_body, int elements_of_pedestal, bool 
   return source;
 }
 
+// Plates that are moved against each other by 0.3 edges and pressed: constraints at the border couple most.
+// With directions of the conjugate method in each iteration a step would need 32.
+TEST(DualMortar, NeedsFewIterationsAtABorder) {
+  const json material = elastic(1.0, 0.0, 1.0);
+  json source = scene_of_blocks({block("a", {0, 0, 0}, {10, 10, 1}, {10, 10, 1}, material),
+                                 block("b", {0.3, 0.3, 1}, {10, 10, 1}, {10, 10, 1}, material)},
+                                "[]");
+  json joint = named("joint", with_friction(0.2));
+  joint["nodes"] = "b.z_min";
+  joint["against"] = {{"surface", "a.z_max"}, {"discretization", "dual_mortar"}};
+  source["interfaces"] = {joint};
+  source["time"] = {{"cfl", 0.9}, {"end", 20.0}};
+  for (const char* face : {"b.z_max", "a.z_min"})
+    source["loads"].push_back({{"type", "pressure"}, {"surface", face}, {"history", {{0, 1e-4}}}});
+  const auto [scene, integrator] = run_to_end(source);
+  EXPECT_EQ(integrator.tally().unconverged, 0);
+  EXPECT_LE(integrator.tally().sweeps_max, 25);
+}
+
 // How far one end is above the other. The row of a node beyond the border must not lie at the node: a body
 // with its center in the air would stand. Nor short of the border, from where a supported body tips.
 double tilt_of(const json& source) {

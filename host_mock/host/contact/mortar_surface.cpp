@@ -159,6 +159,15 @@ void MortarSurface::list_pairs(double reach) {
 
 void MortarSurface::list_nodes() {
   listed_nodes_.clear();
+  listed_facets_.clear();
+  for (const std::int32_t p : listed_) {
+    const Patch& patch = patches_[static_cast<std::size_t>(p)];
+    listed_facets_.insert(listed_facets_.end(), patch.candidates.begin(), patch.candidates.end());
+    // of its rows, until it is integrated again
+    for (const FacetOverlap::Part& part : patch.overlap.parts) listed_facets_.push_back(part.facet);
+  }
+  std::sort(listed_facets_.begin(), listed_facets_.end());
+  listed_facets_.erase(std::unique(listed_facets_.begin(), listed_facets_.end()), listed_facets_.end());
   std::fill(is_listed_.begin(), is_listed_.end(), std::uint8_t{0});
   for (const std::int32_t p : listed_) {
     const Patch& patch = patches_[static_cast<std::size_t>(p)];
@@ -184,8 +193,15 @@ bool MortarSurface::has_slid(const Row& row) const {
   return change.squaredNorm() - along * along > std::pow(most_slip * shortest_edge(), 2);
 }
 
+void MortarSurface::find_normals() {
+  normals_.resize(facets().size());
+  for (const std::int32_t facet : listed_facets_)
+    normals_[static_cast<std::size_t>(facet)] = corners_of(facet).double_area().normalized();
+}
+
 // Facets without a row to tell it are looked at as often as rows would be.
 void MortarSurface::refresh() {
+  find_normals();
   for (const std::int32_t k : listed_nodes_) {
     locate(static_cast<std::size_t>(k));
     if (const Row& row = rows_[static_cast<std::size_t>(k)]; row.area > 0.0 && has_slid(row))
@@ -261,7 +277,7 @@ void MortarSurface::locate(std::size_t node_index) {
   for (const Partner& partner : row.partners) row.apart -= partner.weight * place(partner.node);
   row.normal.setZero();
   for (const auto& [facet, weight] : row.normals)
-    row.normal += weight * corners_of(facet).double_area().normalized();
+    row.normal += weight * normals_[static_cast<std::size_t>(facet)];
   row.normal.normalize();
 }
 
@@ -331,6 +347,7 @@ void MortarSurface::load(std::istream& in) {
     }
   }
   list_nodes();
+  find_normals();
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     assemble(k);
     read_array(in, rows_[k].start.data(), 3);

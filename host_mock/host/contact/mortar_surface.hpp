@@ -61,6 +61,7 @@ class MortarSurface : public MeshSurface {
   void find_candidates();
   void list_pairs(double reach);
   void list_nodes();
+  void find_normals();
   void refresh();
   bool has_slid(const Row& row) const;
   void integrate(Patch& patch);
@@ -79,7 +80,9 @@ class MortarSurface : public MeshSurface {
   // The list of patches that have candidates, and of their nodes. It is new once the surfaces may have moved
   // so far that it is not complete.
   std::vector<std::int32_t> listed_, listed_nodes_;
-  std::vector<std::uint8_t> is_listed_;  // by node index
+  std::vector<std::uint8_t> is_listed_;      // by node index
+  std::vector<std::int32_t> listed_facets_;  // of the main surface
+  std::vector<Eigen::Vector3d> normals_;     // of these, by facet
   bool is_list_made_ = false;
   Dofs at_, at_list_;                       // positions, now and when the list was made
   double horizon_ = 0.0, travelled_ = 0.0;  // of the list; since the surfaces were last compared with it
