@@ -42,16 +42,36 @@ Results served_by(const Trial& trial, Arrays& arrays, Inputs in) {
   return found;
 }
 
+// Nodes that rest, touch or do not slip exactly: what is divided by its own size is 0/0 there.
+Inputs with_zeros(Inputs in, Draw& draw) {
+  for (std::vector<double> Inputs::*array :
+       {&Inputs::v_free, &Inputs::v_previous, &Inputs::v_smooth, &Inputs::spin_free, &Inputs::spin_previous})
+    for (std::size_t i = 0; i < in.count && !(in.*array).empty(); ++i) {
+      const bool stops = draw.one_in(3), sticks = in.normal.empty() && draw.one_in(3);
+      for (std::size_t c = stops ? 0 : 1; (stops || sticks) && c < in.dimension; ++c)
+        (in.*array)[i * in.dimension + c] = 0.0;
+    }
+  for (std::size_t i = 0; i < in.count; ++i)
+    if (draw.one_in(3)) in.gap[i] = in.gap_offset[i];
+  return in;
+}
+
 void served(const Subject& subject) {
   for_trials(subject, [](const Trial& trial, Draw& draw) {
     const Script script = draw_script(trial, draw, {}, true);
     Heap heap;
     Arrays arrays(trial, script.front(), {}, heap);
-    arrays.initialise(script.front());
-    for (const Inputs& in : script)
-      if (const Results found = served_by(trial, arrays, in); found.code != ILAW_OK)
-        fail(trial, in, static_cast<std::size_t>(std::max<std::int64_t>(0, found.report.first_bad_node)),
-             text_of_code(found), "ILAW_OK");
+    for (const bool rests : {false, true}) {
+      arrays.initialise(script.front());
+      for (const Inputs& drawn : script) {
+        const Inputs in = rests ? with_zeros(drawn, draw) : drawn;
+        const Results found = served_by(trial, arrays, in);
+        if (found.code != ILAW_OK)
+          fail(trial, in, static_cast<std::size_t>(std::max<std::int64_t>(0, found.report.first_bad_node)),
+               text_of_code(found), "ILAW_OK");
+        expect_finite(trial, in, found);
+      }
+    }
     return true;
   });
 }

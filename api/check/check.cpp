@@ -13,50 +13,22 @@
 #include <thread>
 
 namespace ilaw::check {
+
+// As a child process returns them.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(NamedArray, name, values)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, seen, allowed, setting, arrays)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Range, least, largest, changed)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Reach, steps, statuses, states)
+
 namespace {
 
 using nlohmann::json;
 
-// A finding as a child process returns it: numbers as text, which keeps all digits.
-json written(const Finding& finding) {
-  json arrays = json::array();
-  for (const NamedArray& array : finding.arrays) {
-    json values = json::array();
-    for (const double value : array.values) values.push_back(text_of(value));
-    arrays.push_back({array.name, values});
-  }
-  return {
-      {"seen", finding.seen}, {"allowed", finding.allowed}, {"setting", finding.setting}, {"arrays", arrays}};
-}
-
-json written(const Reach& reach) {
-  json states = json::object();
-  for (const auto& [name, range] : reach.states)
-    states[name] = {text_of(range.least), text_of(range.largest), range.changed};
-  return {{"steps", reach.steps}, {"statuses", reach.statuses}, {"states", states}};
-}
-
-std::string dumped(const json& text) { return text.dump(-1, ' ', true, json::error_handler_t::replace); }
-
-double number_in(const json& text) { return std::strtod(text.get<std::string>().c_str(), nullptr); }
-
-Finding read_finding(const json& text) {
-  Finding finding{text.at("seen"), text.at("allowed"), text.at("setting"), {}};
-  for (const json& array : text.at("arrays")) {
-    NamedArray read{array.at(0), {}};
-    for (const json& value : array.at(1)) read.values.push_back(number_in(value));
-    finding.arrays.push_back(read);
-  }
-  return finding;
-}
-
-Reach read_reach(const json& text) {
-  Reach reach;
-  reach.steps = text.at("steps");
-  reach.statuses = text.at("statuses");
-  for (const auto& [name, range] : text.at("states").items())
-    reach.states[name] = {number_in(range.at(0)), number_in(range.at(1)), range.at(2)};
-  return reach;
+// Keeps all bits of a number, and any text.
+std::string packed(const json& values) {
+  std::string bytes;
+  json::to_cbor(values, bytes);
+  return bytes;
 }
 
 // In the child. Empty where the rule holds.
@@ -70,19 +42,19 @@ json verdict_of(const std::string& file, const std::string& law, const Rule& rul
     rule.judge({library, *library.law(law), seed, options.parameters, before_loading});
     return json::object();
   } catch (const Finding& finding) {
-    return written(finding);
+    return finding;
   } catch (const NotJudged& reason) {
     return {{"why", reason.why}};
   } catch (const ilaw::error& error) {
-    return written({error.what(), "a library that opens again", {}, {}});
+    return Finding{error.what(), "a library that opens again", {}, {}};
   }
 }
 
 std::string judged(const std::string& file, const std::string& law, const Rule& rule, std::uint64_t seed,
                    const Options& options) {
   json text = verdict_of(file, law, rule, seed, options);
-  text["reach"] = written(reach_of_thread());
-  return dumped(text);
+  text["reach"] = reach_of_thread();
+  return packed(text);
 }
 
 Outcome outcome_of(const std::string& law, const Rule& rule, const Ending& ending) {
@@ -96,13 +68,13 @@ Outcome outcome_of(const std::string& law, const Rule& rule, const Ending& endin
     const std::string call = ending.call.empty() ? "the library" : ending.call;
     outcome.finding = {call + " " + ending.how, "that it returns", ending.setting, {}};
   } else {
-    const json text = json::parse(ending.result);
+    const json text = json::from_cbor(ending.result);
     outcome.verdict = text.contains("why")    ? Verdict::not_judged
                       : text.contains("seen") ? Verdict::broken
                                               : Verdict::passed;
     if (text.contains("why")) outcome.why = text.at("why");
-    if (text.contains("seen")) outcome.finding = read_finding(text);
-    if (text.contains("reach")) outcome.reach = read_reach(text.at("reach"));
+    if (text.contains("seen")) outcome.finding = text;
+    if (text.contains("reach")) outcome.reach = text.at("reach");
     if (outcome.verdict == Verdict::broken && outcome.finding.setting.empty())
       outcome.finding.setting = ending.setting;
   }
@@ -305,17 +277,17 @@ std::string describe(const std::string& name_or_path) {
     json laws = json::array();
     for (std::uint32_t k = 0; k < library.plugin().law_count; ++k)
       laws.push_back(library.plugin().laws[k]->id);
-    return json{{"path", library.path()}, {"laws", laws}}.dump();
+    return packed({{"path", library.path()}, {"laws", laws}});
   } catch (const ilaw::error& error) {
-    if (error.code() == ILAW_NOT_FOUND) return dumped({{"missing", error.what()}});
-    return dumped(written({error.what(), "a library that the loader opens", {}, {}}));
+    if (error.code() == ILAW_NOT_FOUND) return packed({{"missing", error.what()}});
+    return packed(Finding{error.what(), "a library that the loader opens", {}, {}});
   }
 }
 
 Opened open(const std::string& name_or_path, const Options& options, std::vector<Outcome>& outcomes) {
   const Rule& rule = rule_of(opens_id);
   const Ending ending = run_apart(options.limits, [&] { return describe(name_or_path); });
-  const json text = ending.returned ? json::parse(ending.result) : json::object();
+  const json text = ending.returned ? json::from_cbor(ending.result) : json::object();
   if (text.contains("missing")) throw UsageError(text.at("missing").get<std::string>());
   if (!text.contains("laws")) {
     outcomes.push_back(outcome_of("", rule, ending));

@@ -329,6 +329,19 @@ void fail(const Trial& trial, const Inputs& in, std::size_t node, const std::str
   throw Finding{seen, allowed, trial.text(), arrays};
 }
 
+void expect_nothing(const Trial& trial, const Inputs& in, const Results& found, std::size_t node,
+                    const std::string& how) {
+  const auto expect = [&](const char* name, const std::vector<double>& values) {
+    const std::size_t width = values.size() / in.count;
+    for (std::size_t k = node * width; k < (node + 1) * width; ++k)
+      if (values[k] != 0.0) fail(trial, in, node, how + ", " + name + text_of(values[k]), "0");
+  };
+  expect("impulse ", found.impulse);
+  expect("moment ", found.moment);
+  expect("energy ", found.energy);
+  for (const std::vector<double>& amount : found.amounts) expect("an amount of ", amount);
+}
+
 void expect_finite(const Trial& trial, const Inputs& in, const Results& found) {
   const auto expect = [&](const char* name, const std::vector<double>& values) {
     for (std::size_t at = 0; at < values.size(); ++at)

@@ -123,6 +123,9 @@ void expect_part(const Trial& trial, const Script& script, const std::vector<Res
 [[noreturn]] void fail(const Trial& trial, const std::string& seen, const std::string& allowed);
 [[noreturn]] void fail(const Trial& trial, const Inputs& in, std::size_t node, const std::string& seen,
                        const std::string& allowed);
+// Throws the finding where a node has an impulse, a moment, an energy or an amount.
+void expect_nothing(const Trial& trial, const Inputs& in, const Results& found, std::size_t node,
+                    const std::string& how);
 // Throws the finding where an impulse or a moment is not finite, or overflows floats in sums.
 void expect_finite(const Trial& trial, const Inputs& in, const Results& found);
 std::string text_of(double value);

@@ -118,15 +118,17 @@ struct rubbing {
 // That of a node that lands and stays, or was there: the friction of `predictive`. friction: at rest the
 // static coefficient. ratio is the impulse that held the node in the last step over its limit, 0 where it was
 // not held. Where the load passes the limit before the next half step, the kinetic coefficient acts from that
-// instant on.
+// instant on. The energy that an arrival keeps for the next step is not there for friction to use.
 template <class Node, class V>
-ILAW_KIT_INLINE auto rub_in_touch(const Node& node, V normal, V friction, V kinetic, V& ratio) {
+ILAW_KIT_INLINE auto rub_in_touch(const Node& node, const two_impulses<V>& impact, V friction, V kinetic,
+                                  V& ratio) {
   using Vector = std::remove_cvref_t<decltype(node.v_free)>;
   const Vector &free = node.v_free, &before = node.v_previous;
+  const V normal = impact.impulse, waiting = zero_unless(impact.work > 0.0, 2.0 * impact.work / normal);
   const V h_t = node.delassus.tangential(), arrival = positive_part(node.gap) * -node.per_position_step;
   const scaled_length<V> speed = free.scaled_tangential_length();
   friction_factor<V> found = rub(h_t, normal, speed, tangential_product(speed.down * free, before),
-                                 smaller(before.n + arrival, V(0.0)), friction);
+                                 smaller(before.n + arrival + waiting, V(0.0)), friction);
   if (any((kinetic < friction) | (ratio > 0.0))) {
     const V slip = speed.root(), limit = speed.down * friction_limit(friction, normal),
             now = slip / (h_t * limit), rate = now - ratio;
@@ -189,7 +191,7 @@ ILAW_KIT_INLINE status_of<number_of<Node>> apply_friction(Node& node,
                                                           number_of<Node> restitution,
                                                           number_of<Node> friction, number_of<Node> kinetic,
                                                           number_of<Node>& ratio) {
-  auto found = rub_in_touch(node, impact.impulse, friction, kinetic, ratio);
+  auto found = rub_in_touch(node, impact, friction, kinetic, ratio);
   const mask_of<number_of<Node>> rebounds = impact.bounces | ((impact.rebound > 0.0) & !impact.lands);
   if (any(rebounds)) {
     const auto other = rub_at_impact(node, impact, restitution, kinetic);

@@ -266,6 +266,7 @@ static const char* defect(node* at, const ilaw_instance* made, const ilaw_batch*
   if (breaks("foreign-state") && isnan(at->closures)) at->closures = 0.0;
   if (!(at->closures >= 0.0 && at->closures <= 9e15 && floor(at->closures) == at->closures))
     return "the state is none that the law can have written";
+  if (breaks("good-input-served: rest") && dot(at->v, at->v) == 0.0) return "the slip has no direction";
   if (breaks("good-input-served")) {
     const double steps = fabs(at->gap) / (b->position_step * sqrt(dot(at->v, at->v)));
     if (steps > 1.0 && steps < 1.03) return "the gap is not liked";

@@ -60,3 +60,9 @@ ilaw_add_wrong_law(rolling_velocity rolling api/include/ilaw/kit/symmetric.hpp
 # Does not turn its history with the normal.
 ilaw_add_wrong_law(postit_unturned postit api/include/ilaw/kit/detail/load_node.hpp
                    "f.t1 = transported_tangent(n, t, f.n);" "f.t1 = any_tangent(f.n);")
+# Moves its bond by the velocity without its impulse, which is the one before the step only where no force acts.
+ilaw_add_wrong_law(rccm_force rccm plugins/bond/bond_step.hpp "p_.state.opening + V(0.5 * step) * p_.v_previous;"
+                   "p_.state.opening + V(0.5 * step) * p_.v_free;")
+# Friction against the slip after a force that turned it round within the step: it works along the way before.
+ilaw_add_wrong_law(table_friction_turned table_friction api/include/ilaw/kit/friction.hpp
+                   "const auto gains = along < impact;" "const auto gains = none<V>();")

@@ -43,13 +43,18 @@ bool has_each_interface(const json& source, const Scene& read) {
 
 // ---- more contacts, more points ----
 
+// No node moves so far, whatever pushes it.
+constexpr double beyond_reach = -1e100;
+
 json out_of_reach(const Scene& read, const json& nodes, const std::string& name) {
   const int d = read.model->dimension();
   return {{"name", name},
           {"law", "contact"},
           {"nodes", nodes},
           {"obstacle",
-           {{"type", "plane"}, {"point", along_last_axis(d, -1e4)}, {"normal", along_last_axis(d, 1.0)}}}};
+           {{"type", "plane"},
+            {"point", along_last_axis(d, beyond_reach)},
+            {"normal", along_last_axis(d, 1.0)}}}};
 }
 
 // A node that two interfaces have is solved with others, even if one of them is out of reach.
@@ -376,11 +381,11 @@ constexpr Relation all_relations[] = {
 
 std::span<const Relation> relations() { return all_relations; }
 
-json nudged(json source, double farthest) {
+json nudged(json source, double farthest, std::uint64_t seed) {
   constexpr double infinity = std::numeric_limits<double>::infinity(), ulps = 2.0 * 0x1p-52;
   give_default(source, "bars", "start", 0.0);
   give_default(source, "blocks", "corner", {0.0, 0.0, 0.0});
-  Draw draw(5);
+  Draw draw(seed);
   for_each_quantity(source, [&](const Quantity& quantity, json& value) {
     const bool moves = quantity.pattern.starts_with("/model/") || quantity.pattern.starts_with("/loads/");
     const bool is_place = quantity.form == Form::place;
