@@ -120,5 +120,28 @@ TEST(Pressure, CompressesRubberToTheStretchOfItsLaw) {
   }
 }
 
+// The work of a constant pressure is what it takes from the volume, but for the step's second order.
+TEST(Pressure, WorksOnTheVolume) {
+  constexpr double p = 0.2;
+  json source = rubber_block("neo_hookean");
+  press_everywhere(source, p);
+  source["time"] = {{"end", 2.0}};
+  std::vector<double> steps, errors;
+  for (const double h : {0.05, 0.035, 0.011}) {
+    source["time"]["dt"] = h;
+    auto [scene, integrator] = run_to_end(source);
+    // Work is booked at half steps: the volume is that half a step on.
+    const Dofs u = integrator.displacement() + 0.5 * h * integrator.velocity();
+    const double before = volume_of(*scene.model, 0.5 * h * Dofs::Zero(u.size()));
+    const double work = p * (before - volume_of(*scene.model, u));
+    steps.push_back(h);
+    errors.push_back(std::abs(integrator.energy().external_work - work));
+    EXPECT_GT(work, 0.02) << "h " << h;
+    EXPECT_LT(errors.back(), 0.5 * h * h) << h;
+    EXPECT_LT(integrator.energy().balance_error, 1e-12) << "h " << h;
+  }
+  EXPECT_GT(order(steps, errors), 1.8);
+}
+
 }  // namespace
 }  // namespace ilaw::host::testing::pressure

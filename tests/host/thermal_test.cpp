@@ -403,5 +403,30 @@ TEST(Thermal, WarnsOfATemperatureThatNoLawReads) {
   EXPECT_TRUE(scene_of(scene).warnings.empty());
 }
 
+// The block of docs/results/tyre_block.md.
+TEST(Thermal, HeatsTheShippedTyreBlock) {
+  json scene = read_scene_source(scene_files::named("tyre_block.json"));
+  std::vector<double> rises;
+  for (const double cfl : {0.9, 0.57, 0.31}) {
+    scene["time"]["cfl"] = cfl;
+    auto [read, integrator] = run_to_end(scene);
+    const HeatReport heat = integrator.temperatures()->report();
+    EXPECT_NEAR(heat.friction / integrator.energy().by_law[ILAW_ENERGY_FRICTION], 1.0, 1e-12);
+    EXPECT_NEAR(heat.obstacles / heat.friction, 0.66, 1e-12);
+    EXPECT_LT(heat.balance_error, 1e-11);
+    EXPECT_LT(integrator.energy().balance_error, 1e-11);
+    // The surface of a half space under the mean flux; friction changes by a few percent as it heats.
+    const double flux = heat.stored / 4e-4 / integrator.time();
+    double rise = 0.0;
+    for (const int node : read.interfaces[0]->nodes())
+      rise += 0.25 * (integrator.temperatures()->at(node) - 293.0);
+    EXPECT_NEAR(rise / (2 * flux * std::sqrt(integrator.time() / (std::numbers::pi * 0.25 * 1150 * 1800))),
+                1.0, 0.05);
+    rises.push_back(rise);
+  }
+  EXPECT_NEAR(rises[0] / rises[2], 1.0, 0.01);
+  EXPECT_NEAR(rises[1] / rises[2], 1.0, 0.01);
+}
+
 }  // namespace
 }  // namespace ilaw::host::testing::thermal
