@@ -200,6 +200,34 @@ TEST(Warnings, TellOfPartnersThatDoNotFaceTheirNodes) {
   EXPECT_THAT(warnings_of(scene), HasSubstr("/interfaces/0/against/nodes: found node 36 more than once"));
 }
 
+// The nodes of a face are in an order that depends on its axis and side.
+TEST(Partners, OfTwoFacesFaceEachOther) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool swapped : {false, true}) {
+      json scene = json::parse(R"({"model": {"type": "blocks", "blocks": [
+          {"name": "low", "size": [1, 2, 3], "elements": [2, 3, 4], "material": {"young": 1, "density": 1}},
+          {"name": "up", "size": [1, 2, 3], "elements": [2, 3, 4], "material": {"young": 1, "density": 1}}]},
+          "time": {"cfl": 0.5, "end": 1}, "interfaces": [{"law": "contact"}]})");
+      std::array<double, 3> corner{}, normal{};
+      corner[axis] = axis + 1.0;
+      normal[axis] = swapped ? -1.0 : 1.0;
+      scene["model"]["blocks"][1]["corner"] = corner;
+      std::array<std::string, 2> faces{std::string("up.") + "xyz"[axis] + "_min",
+                                       std::string("low.") + "xyz"[axis] + "_max"};
+      scene["interfaces"][0]["nodes"] = faces[swapped];
+      scene["interfaces"][0]["against"] = {{"nodes", faces[!swapped]}, {"normal", normal}};
+      const Scene read = scene_of(scene.dump());
+      const Interface& interface = *read.interfaces[0];
+      const std::vector<int>& partners = interface.setup().counterpart->partners();
+      ASSERT_EQ(partners.size(), interface.nodes().size());
+      for (std::size_t k = 0; k < partners.size(); ++k)
+        EXPECT_LT((read.model->position(interface.nodes()[k]) - read.model->position(partners[k])).norm(),
+                  1e-12)
+            << faces[swapped] << " node " << k;
+      EXPECT_EQ(read.warnings.size(), 0U);
+    }
+}
+
 // At an angle theta a tape gives way by F (1 - cos theta) = G b (Rivlin 1944): at 90 degrees F = G b = 0.06.
 // The grip that goes up and back at c does the work (F2 - F0) c per time, which the glue and the air take and
 // which the arm stores: so F2 is G b, and a fifteenth more while the arm leans and swings. The glue

@@ -133,6 +133,26 @@ std::string partner_twice(const Scene&, const Interface& interface) {
   return "";
 }
 
+// The n-th node meets the n-th partner: lists in different orders pair what is far from each other.
+std::string partner_aside(const Scene& scene, const Interface& interface) {
+  constexpr double most_edges = 0.5;
+  const Model& model = *scene.model;
+  if (!has_pairs(interface) || model.dimension() == 1) return "";
+  const std::vector<int>& partners = counterpart_of(interface).partners();
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    const int own = interface.nodes()[k];
+    const Vector x = model.position(own) - model.position(partners[k]),
+                 normal = counterpart_of(interface)
+                              .contact_point(static_cast<int>(k), model.initial_displacement(), 0.0)
+                              .normal;
+    const double aside = (x - x.dot(normal) * normal).norm();
+    if (aside > most_edges * shortest_edge(model))
+      return node(own) + " and its partner " + std::to_string(partners[k]) + " are " + number(aside) +
+             " apart along the interface: are both lists in the same order?";
+  }
+  return "";
+}
+
 // A bond is made where the bodies are: across a gap it pulls from afar.
 std::string open_bond(const Scene& scene, const Interface& interface) {
   constexpr double most_of_edge = 0.1;
@@ -184,9 +204,13 @@ struct InterfaceWarning {
   const char* key;  // below the interface
   std::string (*text)(const Scene&, const Interface&);
 };
-constexpr InterfaceWarning interface_warnings[] = {
-    {"", overlap},   {"/obstacle/normal", wrong_side},     {"/against/nodes", partner_twice},
-    {"", open_bond}, {"/parameters/memory", short_memory}, {"/obstacle/temperature", unread_temperature}};
+constexpr InterfaceWarning interface_warnings[] = {{"", overlap},
+                                                   {"/obstacle/normal", wrong_side},
+                                                   {"/against/nodes", partner_twice},
+                                                   {"/against/nodes", partner_aside},
+                                                   {"", open_bond},
+                                                   {"/parameters/memory", short_memory},
+                                                   {"/obstacle/temperature", unread_temperature}};
 
 // ---- bodies ---------------------------------------------------------------------------------------------
 
