@@ -423,7 +423,7 @@ CASES = [
          (1e5, 1e9)),
     Case("hail on a slope", "impulses less momentum, along y [N s]", "half a step of gravity, of 45 kg",
          ANALYST / "hail.json", lambda found: 45.0 * 10.0 * 0.5 * found.summary["dt"], momentum_left, 1e-9),
-    Case("double cantilever", "length of the crack [m]", "beam theory (Williams 1989)", HOST / "dcb_peel.json",
+    Case("beam peeled from a plane", "length of the crack [m]", "beam theory (Williams 1989)", HOST / "dcb_peel.json",
          (3.0 * 0.05**3 * 0.01**2 / (8.0 * 5e-8)) ** 0.25 - 0.605 * 0.05,
          lambda found: found.summary["energy"]["dissipated_rupture"] / (5e-8 * 0.0125), 2e-2),
     end_notched(),

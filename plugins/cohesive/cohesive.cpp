@@ -41,7 +41,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
       .doc =
           "Bond that holds up to its strength, then softens until its toughness is spent; unloads to the "
           "origin; contact and friction take over as it breaks. Solved with any H for any initial stiffness, "
-          "also infinite, without a limit on the time step.",
+          "also infinite, which does not shorten the stable time increment.",
       .inputs = reads_gap | reads_v_previous | reads_area,
       .capabilities = can_adhere | can_store_energy,
       .permissions = may_skip_free,

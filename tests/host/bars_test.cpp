@@ -58,7 +58,7 @@ TEST(BarOnWall, HasExactContactAtTheCriticalStep) {
 
 // Every node of a bar offers its section.
 TEST(ElasticBar, OffersItsSectionEverywhere) {
-  const Bars bar({{"b", 0.0, 1.0, 4, 1.0, 1.0, 0.3, 0.0, {}}});
+  const Bars bar({{"b", 0.0, 1.0, 4, 1.0, 1.0, 0.3, 0.0}});
   for (const char* set : {"b", "b.left", "b.right", "all"})
     for (const double area : bar.sets().at(set).areas) EXPECT_EQ(area, 0.3) << set;
 }

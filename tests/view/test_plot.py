@@ -188,6 +188,13 @@ def test_mistakes_are_told(tmp_path, arguments, said):
     assert not list(tmp_path.glob("**/*.png"))
 
 
+def test_a_run_that_was_killed_is_named(tmp_path):
+    history = run(sliding(), tmp_path) / "history.csv"
+    history.rename(history.with_name("history.csv.partial"))
+    done = plot(history.parent)
+    assert done.returncode == 2 and "of a run that has not ended" in done.stderr, done.stderr
+
+
 def test_pictures_are_whole_and_replace_links(tmp_path):
     results = run(sliding(), tmp_path)
     (tmp_path / "precious").write_text("precious")

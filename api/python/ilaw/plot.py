@@ -42,6 +42,8 @@ class History:
         self.run = Run(folder)
         self.names, self.rows = self.run.history()
         if len(self.names) < 2 or not len(self.rows):
+            if (folder / "history.csv.partial").is_file():
+                raise UnreadableRun(f"{folder / 'history.csv'}: found history.csv.partial, of a run that has not ended")
             advice = f"`ilaw run SCENE --out {folder}` writes it if `output` has `watch`, `forces` or `balance`"
             raise UnreadableRun(f"{folder / 'history.csv'}: found no column besides time, expected a history: {advice}")
         self.curves = curves_of(self.run, self.names)
