@@ -65,8 +65,7 @@ TEST(ElasticBar, OffersItsSectionEverywhere) {
 
 // Whichever bar it belongs to: l sqrt(rho/E) of one element.
 TEST(TwoBars, AreLimitedByTheFasterElement) {
-  const BarSetup slow{"slow", 0.0, 1.0, 4, 1.0, 1.0, 1.0, 0.0, {}},
-      fast{"fast", 2.0, 1.0, 8, 4.0, 1.0, 1.0, 0.0, {}};
+  const BarSetup slow{"slow", 0.0, 1.0, 4, 1.0, 1.0, 1.0, 0.0}, fast{"fast", 2.0, 1.0, 8, 4.0, 1.0, 1.0, 0.0};
   EXPECT_EQ(Bars({slow}).critical_step(), 0.25);
   EXPECT_EQ(Bars({slow, fast}).critical_step(), 0.0625);
   EXPECT_EQ(Bars({fast, slow}).critical_step(), 0.0625);
