@@ -45,8 +45,10 @@ contains
   end subroutine
 
   ! Forces f(:,k) in local axes: along the predicted slip `tangent`, and across it. Each contact gives the slip
-  ! of the increment, the force that stops it, the normal force, and memory(:,k): whether it has begun, its slip
-  ! velocity, the state of the law. message is blank where all is well.
+  ! of the increment, the force that stops it, the normal force, and memory(:,k): the end of the last increment
+  ! in which it touched (0: none), its slip velocity, the state of the law. A contact that begins, or that was
+  ! open meanwhile, rests if the law holds it at rest; else the predicted velocity is that before.
+  ! message is blank where all is well.
   subroutine friction_forces(law, time, dt, slip, stick, pressing, tangent, normal, area, memory, f, message)
     type(friction_law), intent(in) :: law
     real(c_double), intent(in) :: time, dt, slip(:), stick(:), pressing(:)
@@ -55,10 +57,13 @@ contains
     real(c_double), intent(out) :: f(:, :)
     character(*), intent(out) :: message
     real(c_double), target, dimension(size(normal, 1), size(slip)) :: v_free, v_before, v, r
-    real(c_double), target :: h(size(slip)), gap(size(slip)), state(law%state_size, size(slip))
-    integer(c_int32_t), allocatable, target :: moving(:), fresh(:)
+    real(c_double), target :: h(size(slip)), gap(size(slip))
+    real(c_double), target, dimension(law%state_size, size(slip)) :: state, trial
+    integer(c_int32_t), allocatable, target :: moving(:), fresh(:), begun(:)
+    integer(c_int8_t), target :: status(size(slip))
     type(ilaw_batch) :: batch
     type(ilaw_report) :: report
+    logical :: continues(size(slip))
     integer :: d, i, k
 
     message = ''
@@ -68,13 +73,19 @@ contains
       write (message, '(a,i0,a)') 'the law needs ', 1 + d + law%state_size, ' state variables per node (*DEPVAR)'
       return
     end if
+    ! Times may come rounded to single precision.
+    continues = memory(1, :) > 0 .and. time - memory(1, :) < 0.5d0*dt + 4*epsilon(1.0)*abs(time)
+    do k = 1, size(slip)
+      if (slip(k) <= 0) memory(2:1 + d, k) = 0
+      if (memory(1, k) > 0) memory(1, k) = time + dt
+    end do
     moving = pack([(k, k=1, size(slip))], slip > 0 .and. stick > 0)
     if (size(moving) == 0) return
     do i = 1, size(moving)
       k = moving(i)
       h(k) = slip(k)/(stick(k)*dt**2)
       v_free(:, k) = slip(k)/dt*tangent(:, k) - h(k)*pressing(k)*dt*normal(:, k)
-      v_before(:, k) = merge(memory(2:1 + d, k), slip(k)/dt*tangent(:, k), memory(1, k) > 0)
+      v_before(:, k) = merge(memory(2:1 + d, k), 0.0_c_double, continues(k))
       state(:, k) = memory(2 + d:1 + d + law%state_size, k)
     end do
     gap = 0
@@ -96,13 +107,27 @@ contains
       call ilaw_use_nodes(batch, fresh)
       if (ilaw_interface_initialise(law%interface, batch, report) /= ILAW_OK) message = ilaw_text(report%reason)
     end if
+    begun = pack(moving, .not. continues(moving))
+    if (size(begun) > 0) then
+      trial = state
+      batch%state_out = ilaw_output_of(trial)
+      batch%status = c_loc(status)
+      batch%status_stride = 1
+      call ilaw_use_nodes(batch, begun)
+      if (ilaw_interface_evaluate(law%interface, batch, report) /= ILAW_OK) message = ilaw_text(report%reason)
+      do i = 1, size(begun)
+        k = begun(i)
+        if (status(k) == ILAW_SLIP) v_before(:, k) = slip(k)/dt*tangent(:, k)
+      end do
+      batch%state_out = ilaw_output_of(state)
+    end if
     call ilaw_use_nodes(batch, moving)
     if (ilaw_interface_evaluate(law%interface, batch, report) /= ILAW_OK) message = ilaw_text(report%reason)
     do i = 1, size(moving)
       k = moving(i)
       f(1, k) = dot_product(r(:, k), tangent(:, k))/dt
       if (d == 3) f(2, k) = dot_product(r(:, k), cross(normal(:, k), tangent(:, k)))/dt
-      memory(1, k) = 1
+      memory(1, k) = time + dt
       memory(2:1 + d, k) = v(:, k) - dot_product(v(:, k), normal(:, k))*normal(:, k)
       memory(2 + d:1 + d + law%state_size, k) = state(:, k)
     end do

@@ -135,6 +135,35 @@ TEST_F(Vfric, RestHasStaticCoefficient) {
   EXPECT_LE(block.speed_of(0), rounding * speed);
 }
 
+// A node has no velocity before if it begins to touch, has rested, or comes back after it was open; the
+// predicted slip of a load below the limit is none.
+TEST_F(Vfric, RestsWhateverItDidBefore) {
+  for (const double decay : {1e9, 1.0})
+    for (const char* before : {"nothing", "a slide and a rest", "a slide and a flight"}) {
+      Points block;
+      block.interaction = "AGAIN" + std::to_string(decay);
+      block.constants = {mu, 0.05, decay};
+      const double load = 0.9 * mu * pressure;
+      block.begin({0, 0, 0}, {0, 0, 0});
+      const auto set = [&](std::vector<double>& of, double along) {
+        for (std::size_t i = 0; i < of.size(); i += 3) of[i] = along;
+      };
+      const std::string story = before;
+      if (story != "nothing") {
+        set(block.v, speed);
+        for (int n = 0; n < 3; ++n) ASSERT_EQ(block.step(), "");
+        set(block.v, 0.0);
+        for (int n = story == "a slide and a rest" ? 1 : 0; n > 0; --n) ASSERT_EQ(block.step(), "");
+        if (story == "a slide and a flight") block.time += 10 * block.dt;
+      }
+      set(block.load, load);
+      for (int n = 0; n < 5; ++n) {
+        ASSERT_EQ(block.step(), "");
+        EXPECT_NEAR(block.f[0], -load, 4 * rounding * load) << decay << " after " << before << ", " << n;
+      }
+    }
+}
+
 // On a plane that lies askew a slide keeps its direction; in two dimensions it stops like that in three.
 TEST_F(Vfric, AnyAxesAndDimensions) {
   Points askew, plane;
