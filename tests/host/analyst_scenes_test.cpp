@@ -205,8 +205,8 @@ TEST(Partners, OfTwoFacesFaceEachOther) {
   for (int axis = 0; axis < 3; ++axis)
     for (const bool swapped : {false, true}) {
       json scene = json::parse(R"({"model": {"type": "blocks", "blocks": [
-          {"name": "low", "size": [1, 2, 3], "elements": [2, 3, 4], "material": {"young": 1, "density": 1}},
-          {"name": "up", "size": [1, 2, 3], "elements": [2, 3, 4], "material": {"young": 1, "density": 1}}]},
+          {"name": "low", "size": [1, 2, 3], "elements": [2, 3, 4], "material": {"type": "linear", "young": 1, "poisson": 0, "density": 1}},
+          {"name": "up", "size": [1, 2, 3], "elements": [2, 3, 4], "material": {"type": "linear", "young": 1, "poisson": 0, "density": 1}}]},
           "time": {"cfl": 0.5, "end": 1}, "interfaces": [{"law": "contact"}]})");
       std::array<double, 3> corner{}, normal{};
       corner[axis] = axis + 1.0;
