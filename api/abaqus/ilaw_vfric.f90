@@ -110,6 +110,7 @@ contains
     begun = pack(moving, .not. continues(moving))
     if (size(begun) > 0) then
       trial = state
+      status = ILAW_SLIP  ! a law need not give it
       batch%state_out = ilaw_output_of(trial)
       batch%status = c_loc(status)
       batch%status_stride = 1

@@ -256,7 +256,7 @@ Ending ending_of(const Shared& left, Waiting waiting, int status, double seconds
   Ending ending;
   ending.late = waiting == Waiting::too_long;
   ending.returned = in_time && left.returned;
-  ending.result.assign(left.result.data(), left.size);
+  ending.result.assign(left.result.data(), std::min(left.size, most_result));
   if (!ending.returned)
     ending.how = in_time && left.what[0] != '\0' ? left.what.data() : how_it_ended(in_time, status, seconds);
   ending.call = left.call.data();

@@ -75,8 +75,9 @@ void Iterations::exchange_velocities() {
 
 Outcome Iterations::conjugate(Blocks& blocks, Progress& progress, std::uint32_t most) {
   // With a direction the square of the change falls by beta at best, as it does without one, so that the
-  // direction pays only if iterations are slow. At borders, integrated weights are solved later by it.
-  const double fast = problem_.has_integrated() ? 0.25 : 0.1;
+  // direction pays only if iterations are slow. At borders, integrated weights are solved later by it. All
+  // ranks take the same step, or copies of a body would move apart.
+  const double fast = ranks_.any_rank(problem_.has_integrated()) ? 0.25 : 0.1;
   Sweep::Conjugate step;
   double square_before = -1.0;
   progress.method = most > 1 ? ILAW_METHOD_CONJUGATE : ILAW_METHOD_GAUSS_SEIDEL;

@@ -123,14 +123,14 @@ std::unique_ptr<Counterpart> read_partners(const json& against, const NodeSet& o
   if (partners.nodes.size() != own.nodes.size())
     throw mistake(pointer + "/nodes", std::to_string(partners.nodes.size()) + " nodes",
                   "one for each of the " + std::to_string(own.nodes.size()) + " nodes of the interface");
-  for (std::size_t k = 0; k < own.nodes.size(); ++k)
-    if (own.nodes[k] == partners.nodes[k])
-      throw SceneError(pointer + "/nodes",
-                       "node " + std::to_string(own.nodes[k]) + " would meet itself, expected another node");
   const Vector normal =
       read_direction(against["normal"], model.dimension(), pointer + "/normal").normalized();
   if (!against["nodes"].is_array() && model.dimension() > 1)
     partners.nodes = facing(own.nodes, partners.nodes, normal, model);
+  for (std::size_t k = 0; k < own.nodes.size(); ++k)
+    if (own.nodes[k] == partners.nodes[k])
+      throw SceneError(pointer + "/nodes",
+                       "node " + std::to_string(own.nodes[k]) + " would meet itself, expected another node");
   return std::make_unique<NodeCounterpart>(model, own.nodes, partners.nodes, normal);
 }
 
