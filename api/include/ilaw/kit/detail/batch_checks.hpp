@@ -102,60 +102,42 @@ inline const char* wrong_flags(std::uint32_t capabilities, const ilaw_batch& b) 
   return "the batch tells bonds to hold or break, of a law that cannot hold bonds";
 }
 
+// The inputs that a batch is read for: of what its law reads, and of energies.
+inline std::uint32_t inputs_read(const instance_base& made, const ilaw_batch& b) {
+  return reads_motion | (made.has_spins() ? reads_spins : 0U) | made.inputs |
+         (wants_balance(made, b) ? made.balance_inputs : 0U);
+}
+
 // An array of numbers that are not the setup's, or with both pointers.
 template <class Array>
 bool is_of_other_numbers(const instance_base& made, const Array& a) {
   return made.numbers == ILAW_NUMBERS_FLOAT ? static_cast<bool>(a.values) : static_cast<bool>(a.floats);
 }
-// Checks the arrays that are read or written; those of a state are always doubles.
-inline const char* other_numbers(const instance_base& made, const ilaw_batch& b, std::uint32_t read) {
-  const auto other = [&](const auto& a) { return is_of_other_numbers(made, a); };
-  bool is_bad =
-      other(b.v_free) || other(b.delassus) || other(b.impulse) || other(b.velocity) || other(b.energy);
-  is_bad = is_bad || ((read & ILAW_INPUT_GAP) && (other(b.gap) || other(b.gap_offset)));
-  is_bad = is_bad || ((read & ILAW_INPUT_V_SMOOTH) && other(b.v_smooth));
-  is_bad = is_bad || ((read & ILAW_INPUT_V_PREVIOUS) && other(b.v_previous));
-  if (made.has_spins())
-    is_bad = is_bad || other(b.spin_free) || other(b.moment) || other(b.spin) ||
-             ((read & ILAW_INPUT_V_PREVIOUS) && other(b.spin_previous));
-  is_bad = is_bad || ((read & ILAW_INPUT_AREA) && other(b.area));
-  is_bad = is_bad || ((read & ILAW_INPUT_NORMAL) && other(b.normal));
-  is_bad = is_bad || ((read & ILAW_INPUT_TANGENT) && other(b.tangent));
-  is_bad = is_bad || (made.state_size > 0 && (b.state_in.floats || b.state_out.floats));
-  for (std::uint32_t k = 0; b.per_node_parameters && k < made.per_node_count; ++k)
-    is_bad = is_bad || other(b.per_node_parameters[k]);
-  for (std::uint32_t k = 0; b.amounts && k < made.amount_count; ++k) is_bad = is_bad || other(b.amounts[k]);
-  return is_bad ? "an array is of other numbers than the setup's, or has both pointers" : nullptr;
-}
+inline constexpr const char* other_numbers =
+    "an array is of other numbers than the setup's, or has both pointers";
 
-// A vector whose components have one address. It comes from a flat array of all degrees of freedom, whose
-// first numbers would be taken in silence for every component.
-inline bool is_flat(std::uint32_t components, const ilaw_input& a) {
-  return (a.values || a.floats) && components > 1 && a.component_stride == 0;
-}
-
-// Says which array that evaluate or initialise needs is absent or flat; null when none is.
-inline const char* wrong_input(const instance_base& made, const ilaw_batch& b, std::uint32_t needed) {
-  const auto flat = [&](ilaw_inputs input, const ilaw_input& a) {
-    return (needed & input) && is_flat(made.dimension, a);
+// Says what is wrong with the arrays that are read; null when nothing is. A vector whose components have one
+// address comes from a flat array of all degrees of freedom, whose first numbers would be taken in silence
+// for every component.
+inline const char* wrong_input(const instance_base& made, const ilaw_batch& b, std::uint32_t read) {
+  const int dimension = static_cast<int>(made.dimension);
+  const char* wrong = nullptr;
+  const auto check = [&](const array_card& card, const ilaw_input& a) {
+    if (wrong || !card.is_in(read)) return;
+    if (card.is_required && is_absent(made, a))
+      wrong = card.absent;
+    else if ((a.values || a.floats) && card.count(dimension) > 1 && a.component_stride == 0)
+      wrong = card.flat;
+    else if (is_of_other_numbers(made, a))
+      wrong = other_numbers;
   };
-  if ((needed & ILAW_INPUT_GAP) && is_absent(made, b.gap)) return "gap is null";
-  if ((needed & ILAW_INPUT_V_PREVIOUS) && is_absent(made, b.v_previous)) return "v_previous is null";
-  if ((needed & ILAW_INPUT_AREA) && is_absent(made, b.area)) return "area is null";
-  if ((needed & ILAW_INPUT_NORMAL) && is_absent(made, b.normal)) return "normal is null";
-  if ((needed & ILAW_INPUT_TANGENT) && is_absent(made, b.tangent)) return "tangent is null";
-  if (made.per_node_count > 0 && !b.per_node_parameters) return "per_node_parameters is null";
-  for (std::uint32_t k = 0; k < made.per_node_count; ++k)
+  for_inputs(check, b);
+  if (wrong || made.per_node_count == 0) return wrong;
+  if (!b.per_node_parameters) return "per_node_parameters is null";
+  for (std::uint32_t k = 0; k < made.per_node_count; ++k) {
     if (is_absent(made, b.per_node_parameters[k])) return "values of a per-node parameter are null";
-  if (made.state_size > 0 && !b.state_out.values) return "state_out is null";
-  if (flat(ILAW_INPUT_V_PREVIOUS, b.v_previous))
-    return "v_previous has one component per node (component stride 0), expected a (d,n) array";
-  if (flat(ILAW_INPUT_V_SMOOTH, b.v_smooth))
-    return "v_smooth has one component per node (component stride 0), expected a (d,n) array";
-  if (flat(ILAW_INPUT_NORMAL, b.normal))
-    return "normal has one component per node (component stride 0), expected a (d,n) array";
-  if (flat(ILAW_INPUT_TANGENT, b.tangent))
-    return "tangent has one component per node (component stride 0), expected a (d,n) array";
+    if (is_of_other_numbers(made, b.per_node_parameters[k])) return other_numbers;
+  }
   return nullptr;
 }
 
@@ -190,36 +172,33 @@ inline bool collides(const ilaw_output& a, std::int64_t nodes, std::int64_t comp
          ((nodes > 1 && a.node_stride == 0) || (components > 1 && a.component_stride == 0));
 }
 
-inline const char* colliding_state(const instance_base& made, const ilaw_batch& b) {
+inline const char* wrong_state_out(const instance_base& made, const ilaw_batch& b) {
+  if (made.state_size > 0 && !b.state_out.values) return "state_out is null";
+  if (made.state_size > 0 && b.state_out.floats) return other_numbers;
   const bool is_bad = collides(b.state_out, b.node_count, static_cast<std::int64_t>(made.state_size));
   return is_bad ? "state_out has a stride of 0" : nullptr;
 }
 
-inline const char* colliding_output(const instance_base& made, const ilaw_batch& b) {
-  const std::int64_t n = b.node_count, d = made.dimension;
-  if (collides(b.impulse, n, d)) return "impulse has a stride of 0";
-  if (collides(b.velocity, n, d)) return "velocity has a stride of 0";
-  if (collides(b.energy, n, ILAW_ENERGY_COUNT)) return "energy has a stride of 0";
-  if (made.has_spins() && collides(b.moment, n, 3)) return "moment has a stride of 0";
-  if (made.has_spins() && collides(b.spin, n, 3)) return "spin has a stride of 0";
-  if (b.status && n > 1 && b.status_stride == 0) return "status_stride is 0";
-  for (std::uint32_t k = 0; b.amounts && k < made.amount_count; ++k)
-    if (collides(b.amounts[k], n, 1)) return "an amount has a stride of 0";
-  return colliding_state(made, b);
-}
-
-// The same of what a form of H with spins needs.
-inline const char* wrong_spins(const instance_base& made, const ilaw_batch& b, std::uint32_t needed) {
-  if (!made.has_spins()) return nullptr;
-  if (is_absent(made, b.spin_free)) return "spin_free is null";
-  if (is_absent(made, b.moment)) return "moment is null";
-  if (is_flat(3, b.spin_free))
-    return "spin_free has one component per node (component stride 0), expected a (d,n) array";
-  if (!(needed & ILAW_INPUT_V_PREVIOUS)) return nullptr;
-  if (is_absent(made, b.spin_previous)) return "spin_previous is null";
-  if (is_flat(3, b.spin_previous))
-    return "spin_previous has one component per node (component stride 0), expected a (d,n) array";
-  return nullptr;
+inline const char* wrong_output(const instance_base& made, const ilaw_batch& b, std::uint32_t read) {
+  const int dimension = static_cast<int>(made.dimension);
+  const char* wrong = nullptr;
+  const auto check = [&](const array_card& card, const ilaw_output& a) {
+    if (wrong || !card.is_in(read)) return;
+    if (card.is_required && is_absent(made, a))
+      wrong = card.absent;
+    else if (collides(a, b.node_count, card.count(dimension)))
+      wrong = card.collides;
+    else if (is_of_other_numbers(made, a))
+      wrong = other_numbers;
+  };
+  for_outputs(check, b);
+  if (wrong) return wrong;
+  if (b.status && b.node_count > 1 && b.status_stride == 0) return "status_stride is 0";
+  for (std::uint32_t k = 0; b.amounts && k < made.amount_count; ++k) {
+    if (collides(b.amounts[k], b.node_count, 1)) return "an amount has a stride of 0";
+    if (is_of_other_numbers(made, b.amounts[k])) return other_numbers;
+  }
+  return wrong_state_out(made, b);
 }
 
 inline const char* wrong_batch(const instance_base& made, const ilaw_batch& b, bool list_is_here = true) {
@@ -229,25 +208,21 @@ inline const char* wrong_batch(const instance_base& made, const ilaw_batch& b, b
   if (!(b.position_step > 0.0) || !is_finite(b.position_step))
     return "position_step is not a finite number > 0";
   if (b.node_count == 0) return nullptr;
-  if (is_absent(made, b.v_free)) return "v_free is null";
-  if (is_flat(made.dimension, b.v_free))
-    return "v_free has one component per node (component stride 0), expected a (d,n) array";
-  if (is_absent(made, b.delassus)) return "delassus is null";
-  if (is_absent(made, b.impulse)) return "impulse is null";
-  if (made.state_size > 0 && !b.state_in.values) return "state_in is null";
-  if (const char* wrong = colliding_output(made, b)) return wrong;
-  const std::uint32_t read = made.inputs | (wants_balance(made, b) ? made.balance_inputs : 0U);
+  const std::uint32_t read = inputs_read(made, b);
   if (const char* wrong = wrong_input(made, b, read)) return wrong;
-  if (const char* wrong = wrong_spins(made, b, read)) return wrong;
-  return other_numbers(made, b, read);
+  if (is_absent(made, b.delassus)) return "delassus is null";
+  if (is_of_other_numbers(made, b.delassus)) return other_numbers;
+  if (made.state_size > 0 && !b.state_in.values) return "state_in is null";
+  if (made.state_size > 0 && b.state_in.floats) return other_numbers;
+  return wrong_output(made, b, read);
 }
 
 inline const char* wrong_initial(const instance_base& made, const ilaw_batch& b) {
   if (const char* wrong = wrong_scalars(b)) return wrong;
   if (b.node_count == 0) return nullptr;
-  const std::uint32_t needed = made.inputs & (ILAW_INPUT_AREA | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT);
-  if (const char* wrong = wrong_input(made, b, needed)) return wrong;
-  return colliding_state(made, b);
+  const std::uint32_t read = made.inputs & (ILAW_INPUT_AREA | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT);
+  if (const char* wrong = wrong_input(made, b, read)) return wrong;
+  return wrong_state_out(made, b);
 }
 
 }  // namespace ilaw::kit::detail

@@ -68,28 +68,23 @@ run_function<float> choose_float_loop([[maybe_unused]] const instance<Law>& made
   return nullptr;
 }
 
-template <class Law, class Host, class Number>
-tally walk_with(const instance<Law>& made, const ilaw_batch& batch, run_function<Number> loop) {
-  const Law law = made.at(batch.time);
-  constexpr int columns = 2 * (state_numbers<Law> + (has_history<Law> || has_state<Law> ? 6 : 0));
-  alignas(64) double state_scratch[columns * block_nodes + 1];
-  alignas(64) Number parameter_scratch[parameter_count<Law> * block_nodes];
-  batch_walk<Host, Number, has_window<Law>> walk(made, batch, state_scratch, parameter_scratch);
-  return walk.run(loop, &law);
-}
-
 // An ilaw_kit_walk: a checked batch from end to end, compiled for this level.
 // Not inlined: nothing of it may be computed before the floating-point environment is set.
 template <class Law>
 [[gnu::noinline]] void walk_batch(const void* opaque, const ilaw_batch& batch, void* found) {
   const auto& made = *static_cast<const instance<Law>*>(opaque);
   auto& all = *static_cast<tally*>(found);
+  const Law law = made.at(batch.time);
+  constexpr int columns = 2 * (state_numbers<Law> + (has_history<Law> || has_state<Law> ? frame_size : 0));
+  alignas(64) double state[columns * block_nodes + 1], parameters[parameter_count<Law> * block_nodes];
   if (made.numbers == ILAW_NUMBERS_DOUBLE)
-    all = walk_with<Law, double>(made, batch, choose_loop(made));
+    all = batch_walk<double, double, has_window<Law>>(made, batch, state, parameters)
+              .run(choose_loop(made), &law);
   else if (const auto loop = choose_float_loop(made))
-    all = walk_with<Law, float>(made, batch, loop);
+    all = batch_walk<float, float, has_window<Law>>(made, batch, state, parameters).run(loop, &law);
   else
-    all = walk_with<Law, float>(made, batch, choose_loop(made));
+    all = batch_walk<float, double, has_window<Law>>(made, batch, state, parameters)
+              .run(choose_loop(made), &law);
 }
 
 // ---- why a node is bad

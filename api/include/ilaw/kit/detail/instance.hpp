@@ -20,7 +20,6 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 inline constexpr history_card frame_variables[] = {
     {.name = "frame_normal", .doc = "Normal of the last step.", .internal = true},
     {.name = "frame_tangent", .doc = "First tangent of the last step.", .internal = true}};
-inline constexpr std::int64_t frame_size = 6;
 
 static_assert(table::time == ILAW_TIME && table::computed == ILAW_COMPUTED);
 inline table table_of(const ilaw_table& given) {

@@ -112,13 +112,13 @@ struct kernel {
     h = frame.to_local(h, b.dimension);
     V gap = 0.0, area = 0.0;
     if constexpr (reads<Law>(reads_gap)) {
-      if (b.gap) {
-        gap = load<V>(b.gap + i);
-        if (b.gap_offset) gap = gap - load<V>(b.gap_offset + i);
+      if (b.gap.at) {
+        gap = load<V>(b.gap.at + i);
+        if (b.gap_offset.at) gap = gap - load<V>(b.gap_offset.at + i);
       }
     }
     if constexpr (reads<Law>(reads_area))
-      if (b.area) area = load<V>(b.area + i);
+      if (b.area.at) area = load<V>(b.area.at + i);
 
     if constexpr (careful || frame_type::turns)
       c.finite_vector(v_free, reason_v_free, true);

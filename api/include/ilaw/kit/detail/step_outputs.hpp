@@ -70,7 +70,7 @@ ILAW_KIT_APART void store_heat(const view<Number>& b, std::int64_t i, int first,
                                Vector twice_mean, V partition, V coefficient, mask_of<V> is_free) {
   const V rubs = impulse.tangential_length(), rest = 1.0 - partition;
   const V speed = select(is_free & (rubs > 0.0), friction / rubs, 0.5 * twice_mean.tangential_length());
-  const V area = b.area ? load<V>(b.area + i) : V(0.0);
+  const V area = b.area.at ? load<V>(b.area.at + i) : V(0.0);
   const V depth = coefficient * (impulse.n / area);  // per slip
   const mask_of<V> wears = (depth > 0.0) & (area > 0.0) & (speed > 0.0);
   const V amounts[heat_amount_count] = {zero_unless(partition > 0.0, partition * friction),

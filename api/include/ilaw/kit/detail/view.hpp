@@ -8,7 +8,7 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-inline constexpr int most_parameters = 32, most_amounts = 8, most_states = 24;
+inline constexpr int most_parameters = 32, most_amounts = 8, most_states = 24, frame_size = 6;
 
 // Where the tangents of nodes in the host's axes come from.
 enum class tangents { of_plane, given, carried, chosen };
@@ -31,6 +31,50 @@ struct view_options {
   bool has_amounts;     // an amount is
   const table* tables;  // by the law's parameters, over fields that come per node; null: none
 };
+
+// ---- the arrays of a batch: one list for checks, walks, copies and devices, whose structs name them alike
+
+inline constexpr int of_dimension = 0;  // components
+inline constexpr std::uint32_t reads_motion = 1U << 31, reads_spins = 1U << 30;
+struct array_card {
+  std::uint32_t reads;  // a batch has it where it reads all of these
+  bool is_required;
+  int components;
+  const char *absent, *flat, *collides;
+
+  ILAW_KIT_INLINE bool is_in(std::uint32_t read) const { return (read & reads) == reads; }
+  ILAW_KIT_INLINE int count(int dimension) const {
+    return components == of_dimension ? dimension : components;
+  }
+};
+// Calls f with the card of each array, and the array of that name in each of the structs. H comes apart.
+#define ILAW_KIT_ARRAY(name, reads, is_required, components)                                     \
+  f(array_card{reads, is_required, components, #name " is null",                                 \
+               #name " has one component per node (component stride 0), expected a (d,n) array", \
+               #name " has a stride of 0"},                                                      \
+    s.name...)
+template <class F, class... Structs>
+ILAW_KIT_INLINE void for_inputs(F f, Structs&... s) {
+  ILAW_KIT_ARRAY(v_free, reads_motion, true, of_dimension);
+  ILAW_KIT_ARRAY(v_smooth, ILAW_INPUT_V_SMOOTH, false, of_dimension);
+  ILAW_KIT_ARRAY(v_previous, ILAW_INPUT_V_PREVIOUS, true, of_dimension);
+  ILAW_KIT_ARRAY(normal, ILAW_INPUT_NORMAL, true, of_dimension);
+  ILAW_KIT_ARRAY(tangent, ILAW_INPUT_TANGENT, true, of_dimension);
+  ILAW_KIT_ARRAY(gap, ILAW_INPUT_GAP, true, 1);
+  ILAW_KIT_ARRAY(gap_offset, ILAW_INPUT_GAP, false, 1);
+  ILAW_KIT_ARRAY(area, ILAW_INPUT_AREA, true, 1);
+  ILAW_KIT_ARRAY(spin_free, reads_spins, true, 3);
+  ILAW_KIT_ARRAY(spin_previous, reads_spins | ILAW_INPUT_V_PREVIOUS, true, 3);
+}
+template <class F, class... Structs>
+ILAW_KIT_INLINE void for_outputs(F f, Structs&... s) {
+  ILAW_KIT_ARRAY(impulse, reads_motion, true, of_dimension);
+  ILAW_KIT_ARRAY(velocity, reads_motion, false, of_dimension);
+  ILAW_KIT_ARRAY(energy, reads_motion, false, int{ILAW_ENERGY_COUNT});
+  ILAW_KIT_ARRAY(moment, reads_spins, true, 3);
+  ILAW_KIT_ARRAY(spin, reads_spins, false, 3);
+}
+#undef ILAW_KIT_ARRAY
 
 // In the place of a host's number type: a pack of nodes that was copied to columns of doubles.
 struct copied {};
@@ -65,8 +109,8 @@ struct view : view_options {
 
   array_of<const value, 3> v_free, v_smooth, v_previous, normal, tangent, spin_free, spin_previous;
   array_of<const value, 6> delassus;
-  const value *gap, *gap_offset, *area;
-  const value* parameters[most_parameters];  // by the law's parameters; null: the same at all nodes
+  array_of<const value, 1> gap, gap_offset, area;
+  const double* parameters[most_parameters];  // by the law's; null: the same at all nodes
   array_of<value, 3> impulse, velocity, moment, spin;
   array_of<value, ILAW_ENERGY_COUNT> energy;
   value* amounts[most_amounts];
@@ -95,26 +139,16 @@ class pack_copy {
     static_cast<view_options&>(pack) = b;
     pack.count = b.count - i < width ? b.count - i : width;
     pack.is_scalar = false;
-    take(b.v_free, pack.v_free, v_free_);
-    take(b.v_smooth, pack.v_smooth, v_smooth_);
-    take(b.v_previous, pack.v_previous, v_previous_);
-    take(b.normal, pack.normal, normal_);
-    take(b.tangent, pack.tangent, tangent_);
-    take(b.spin_free, pack.spin_free, spin_free_);
-    take(b.spin_previous, pack.spin_previous, spin_previous_);
+    for_inputs([&](const array_card&, auto& from, auto& to, auto& copy) { take(from, to, copy); }, b, pack,
+               copies_);
     take(b.delassus, pack.delassus, delassus_);
     if (b.is_scalar)
       for (int k = 0; k < width; ++k) delassus_[1][k] = delassus_[0][k];
-    pack.gap = take(b.gap, gap_);
-    if (b.gap && b.gap_offset)
-      for (int k = 0; k < width; ++k) gap_[k] -= static_cast<double>(b.gap_offset[node(k)]);
-    pack.area = take(b.area, area_);
     for (int p = 0; p < most_parameters; ++p) pack.parameters[p] = take(b.parameters[p], parameters_[p]);
-    if (b.impulse.at) pack.impulse.at = impulse_[0];
-    if (b.velocity.at) pack.velocity.at = velocity_[0];
-    if (b.moment.at) pack.moment.at = moment_[0];
-    if (b.spin.at) pack.spin.at = spin_[0];
-    if (b.energy.at) pack.energy.at = energy_[0];
+    const auto aim = [](const array_card&, auto& from, auto& to, auto& copy) {
+      if (from.at) to.at = copy[0];
+    };
+    for_outputs(aim, b, pack, copies_);
     for (int a = 0; a < most_amounts; ++a)
       if (b.amounts[a]) pack.amounts[a] = amounts_[a];
     if (b.status) pack.status = status_;
@@ -135,11 +169,7 @@ class pack_copy {
   // Outputs, to the view that it was copied from.
   template <class Number>
   [[gnu::noinline, gnu::cold]] void give_back(const view<Number>& b) const {
-    give(b.impulse, impulse_);
-    give(b.velocity, velocity_);
-    give(b.moment, moment_);
-    give(b.spin, spin_);
-    give(b.energy, energy_);
+    for_outputs([&](const array_card&, auto& to, auto& copy) { give(to, copy); }, b, copies_);
     for (int a = 0; a < most_amounts; ++a) give(b.amounts[a], amounts_[a]);
     give(b.status, status_);
     give(b.state_out, state_out_);
@@ -181,12 +211,16 @@ class pack_copy {
   const std::int64_t first_;
   const int width_;
   using column = double[copy_lanes];
-  alignas(64) column v_free_[3], v_smooth_[3],
-      v_previous_[3], normal_[3], tangent_[3], delassus_[6], gap_, area_;
-  alignas(64) column spin_free_[3], spin_previous_[3], moment_[3], spin_[3];
-  alignas(64) column parameters_[most_parameters], earlier_[4], given_[5], state_in_[most_states];
+  struct alignas(64) copies {
+    column v_free[3], v_smooth[3], v_previous[3], normal[3], tangent[3], gap[1], gap_offset[1], area[1];
+    column spin_free[3], spin_previous[3];
+    column impulse[3], velocity[3], energy[ILAW_ENERGY_COUNT], moment[3], spin[3];
+  };
+  copies copies_;
+  alignas(64) column delassus_[6],
+      parameters_[most_parameters], earlier_[4], given_[5], state_in_[most_states];
   alignas(64) column state_out_[most_states], frame_in_[6], frame_out_[6];
-  alignas(64) column impulse_[3], velocity_[3], energy_[ILAW_ENERGY_COUNT], amounts_[most_amounts];
+  alignas(64) column amounts_[most_amounts];
   std::uint8_t status_[copy_lanes];
 };
 
@@ -246,7 +280,7 @@ ILAW_KIT_INLINE void prefetch(const view<Number>& b, std::int64_t i, int nodes) 
   prefetch(b.v_previous, i, nodes);
   prefetch(b.normal, i, nodes);
   prefetch(b.delassus, i, nodes);
-  if (b.gap) __builtin_prefetch(b.gap + i);
+  prefetch(b.gap, i, nodes);
   prefetch(b.impulse, i, nodes);
   prefetch(b.velocity, i, nodes);
   prefetch(b.state_in, i, nodes);

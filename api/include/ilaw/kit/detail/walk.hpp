@@ -1,12 +1,156 @@
 // walk.hpp - a batch as views: all of it at once where its arrays are rows or columns, else blocks of nodes,
-// of which the other arrays are copied. Once per level and number types, not per law.
+// of which the other arrays are copied to columns and back, and the windows read before the loop and written
+// after it. Once per level and number types, not per law.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ilaw/kit/detail/batch_checks.hpp>
-#include <ilaw/kit/detail/block_copies.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+// ---- copies of blocks
+
+// The nodes of a part of a batch.
+inline constexpr int block_nodes = 64;  // at most: their copies stay in the first cache
+struct node_range {
+  std::int64_t first, count;
+  bool listed;
+  std::int64_t where[block_nodes];
+
+  node_range(const ilaw_batch& b, std::int64_t start, std::int64_t n)
+      : first(start), count(n), listed(b.index || b.index64) {
+    if (b.index64)
+      for (std::int64_t i = 0; i < n; ++i) where[i] = b.index64[start + i] - b.index_base;
+    else if (b.index)
+      for (std::int64_t i = 0; i < n; ++i) where[i] = std::int64_t{b.index[start + i]} - b.index_base;
+  }
+  std::int64_t operator()(std::int64_t i) const { return listed ? where[i] : first + i; }
+};
+
+// Between the arrays of a host and the columns of a copy: to the copy where the host's numbers are const.
+template <int N, class Host, class Copy>
+[[gnu::noinline]] void copy_nodes(Host* values, std::int64_t stride, std::int64_t component,
+                                  const node_range& n, Copy* copy) {
+  const auto copy_node = [=](std::int64_t node, std::int64_t i) ILAW_KIT_LAMBDA {
+    Host* const at = values + node * stride;
+#pragma GCC unroll 4
+    for (int c = 0; c < N; ++c)
+      if constexpr (std::is_const_v<Host>)
+        copy[c * block_nodes + i] = static_cast<Copy>(at[c * component]);
+      else
+        at[c * component] = static_cast<Host>(copy[c * block_nodes + i]);
+  };
+  if (n.listed)
+    for (std::int64_t i = 0; i < n.count; ++i) copy_node(n.where[i], i);
+  else
+    for (std::int64_t i = 0; i < n.count; ++i) copy_node(n.first + i, i);
+}
+// Rows of four numbers or more, four nodes by four numbers at a time; the last four may overlap the others.
+using four = double __attribute__((vector_size(32)));
+ILAW_KIT_INLINE void transpose(four (&m)[4]) {
+  const four a = __builtin_shufflevector(m[0], m[1], 0, 4, 2, 6),
+             b = __builtin_shufflevector(m[0], m[1], 1, 5, 3, 7),
+             c = __builtin_shufflevector(m[2], m[3], 0, 4, 2, 6),
+             d = __builtin_shufflevector(m[2], m[3], 1, 5, 3, 7);
+  m[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  m[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  m[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  m[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+template <class Host, class Copy>
+[[gnu::noinline]] void copy_rows(Host* values, std::int64_t stride, int count, const node_range& n,
+                                 Copy* copy) {
+  std::int64_t i = 0;
+  for (; i + 4 <= n.count; i += 4)
+    for (int c = 0; c < count; c += 4) {
+      const int first = c + 4 <= count ? c : count - 4;
+      Copy* const columns = copy + first * block_nodes + i;
+      four m[4];
+      if constexpr (std::is_const_v<Host>) {
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) __builtin_memcpy(&m[k], values + n(i + k) * stride + first, sizeof(four));
+        transpose(m);
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) __builtin_memcpy(columns + k * block_nodes, &m[k], sizeof(four));
+      } else {
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) __builtin_memcpy(&m[k], columns + k * block_nodes, sizeof(four));
+        transpose(m);
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) __builtin_memcpy(values + n(i + k) * stride + first, &m[k], sizeof(four));
+      }
+    }
+  for (; i < n.count; ++i)
+    for (int c = 0; c < count; ++c)
+      if constexpr (std::is_const_v<Host>)
+        copy[c * block_nodes + i] = values[n(i) * stride + c];
+      else
+        values[n(i) * stride + c] = copy[c * block_nodes + i];
+}
+// Numbers side by side, of floats to doubles and back.
+template <class From, class To>
+[[gnu::noinline]] void convert(const From* from, To* to, std::int64_t count) {
+  std::int64_t k = 0;
+  for (; k + register_lanes <= count; k += register_lanes)
+    put_one(narrowed<To>(widened(one_at(from + k))), to + k);
+  for (; k < count; ++k) to[k] = static_cast<To>(from[k]);
+}
+
+// ---- windows of a block
+
+struct window_block {
+  alignas(64) double earlier[3][block_nodes], refused[block_nodes];
+  alignas(64) double given[3][block_nodes], adds[block_nodes], clears[block_nodes];
+};
+// Where the windows of a block stand: that of the first node, the strides, and the nodes where they are
+// listed.
+struct window_place {
+  double* first;
+  std::int64_t node_stride, component_stride, count;
+  const std::int64_t* nodes;
+
+  // Calls work with the windows of each pack of nodes; lanes without a node have that of the last one.
+  template <class Work>
+  ILAW_KIT_INLINE void for_packs(Work work) const {
+    constexpr int lanes = lanes_of<pack>;
+    for (std::int64_t i = 0; i < count; i += lanes) {
+      if (node_stride == 1 && !nodes && i + lanes <= count) {
+        work(i, window_columns<pack>{first + i, component_stride});
+      } else {
+        window_rows own;
+        own.stride = component_stride;
+        const std::int64_t last = count - 1 - i;
+#pragma GCC unroll 8
+        for (int lane = 0; lane < lanes; ++lane) {
+          const std::int64_t k = i + (lane < last ? lane : last);
+          own.first[lane] = first + (nodes ? nodes[k] : k) * node_stride;
+        }
+        work(i, own);
+      }
+    }
+  }
+};
+[[gnu::noinline, gnu::flatten]] inline void read_windows(const window& w, const window_place& place,
+                                                         window_block& block) {
+  place.for_packs([&](std::int64_t i, const auto& own) {
+    vector<pack> sum;
+    store(w.read(own, sum), block.refused + i);
+    store(sum.n, block.earlier[0] + i);
+    store(sum.t1, block.earlier[1] + i);
+    store(sum.t2, block.earlier[2] + i);
+  });
+}
+[[gnu::noinline, gnu::flatten]] inline void write_windows(const window& w, const window_place& place,
+                                                          window_block& block) {
+  for (std::int64_t i = place.count; i % lanes_of<pack> != 0; ++i) block.adds[i] = block.clears[i] = 0.0;
+  place.for_packs([&](std::int64_t i, const auto& own) {
+    const vector<pack> impulse{load<pack>(block.given[0] + i), load<pack>(block.given[1] + i),
+                               load<pack>(block.given[2] + i)};
+    w.write(own, load<pack>(block.clears + i) != 0.0, load<pack>(block.adds + i) != 0.0, impulse);
+  });
+}
+
+// ---- the walk
 
 // Whether an array of so many components may stay where it is.
 template <class Array>
@@ -19,7 +163,11 @@ class walk_base {
  protected:
   // state_scratch: block_nodes for each number of state_in, state_out and twice the frame.
   walk_base(const instance_base& made, const ilaw_batch& batch, double* state_scratch)
-      : made_(made), b_(batch), d_(static_cast<int>(made.dimension)), state_scratch_(state_scratch) {}
+      : made_(made),
+        b_(batch),
+        d_(static_cast<int>(made.dimension)),
+        read_(inputs_read(made, batch)),
+        state_scratch_(state_scratch) {}
 
   // ---- which arrays stay
 
@@ -27,8 +175,6 @@ class walk_base {
   bool stays_or_absent(const Array& a, int components) const {
     return is_absent(made_, a) || stays(a, components);
   }
-  bool reads_smooth() const { return (made_.inputs & ILAW_INPUT_V_SMOOTH) != 0; }
-  bool smooth_stays() const { return !reads_smooth() || stays_or_absent(b_.v_smooth, d_); }
   bool delassus_stays() const {
     if (!made_.is_transverse() && d_ < 3) return false;
     return stays(b_.delassus, made_.delassus_numbers());
@@ -43,18 +189,15 @@ class walk_base {
            a.component_stride == 1;
   }
   bool all_stay() const {
-    bool stay = !b_.index && !b_.index64 && (!b_.status || b_.status_stride == 1) &&
-                stays_or_absent(b_.v_free, d_) && smooth_stays() && stays_or_absent(b_.v_previous, d_) &&
-                stays_or_absent(b_.normal, d_) && stays_or_absent(b_.tangent, d_) && delassus_stays() &&
-                stays_or_absent(b_.gap, 1) && stays_or_absent(b_.gap_offset, 1) &&
-                stays_or_absent(b_.area, 1) && stays_or_absent(b_.impulse, d_) &&
-                stays_or_absent(b_.velocity, d_) && stays_or_absent(b_.energy, ILAW_ENERGY_COUNT) &&
+    bool stay = !b_.index && !b_.index64 && (!b_.status || b_.status_stride == 1) && delassus_stays() &&
                 state_stays(b_.state_in) && state_stays(b_.state_out);
-    if (made_.has_spins())
-      stay = stay && stays(b_.spin_free, 3) && stays_or_absent(b_.spin_previous, 3) && stays(b_.moment, 3) &&
-             stays_or_absent(b_.spin, 3);
+    const auto check = [&](const array_card& card, const auto& a) {
+      stay = stay && (!card.is_in(read_) || stays_or_absent(a, card.count(d_)));
+    };
+    for_inputs(check, b_);
+    for_outputs(check, b_);
     for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
-      stay = stay && stays(b_.per_node_parameters[k], 1);
+      stay = stay && made_.numbers == ILAW_NUMBERS_DOUBLE && stays(b_.per_node_parameters[k], 1);
     for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k)
       stay = stay && stays_or_absent(b_.amounts[k], 1);
     return stay;
@@ -78,49 +221,52 @@ class walk_base {
     state_arrays v;
     if (made_.state_size == 0 && made_.states == 0) return v;
     copy_unnamed(n);
-    double* const in = state_scratch_;
-    double* const out = in + made_.states * block_nodes;
-    const ilaw_input& from = b_.state_in;
-    v.in = {in, block_nodes, made_.states, 0};
-    if (!n.listed && state_stays(from)) {
-      v.in = {from.values + n.first * from.node_stride, from.component_stride, made_.states,
-              from.node_stride != 1 ? made_.states : 0};
-    } else if (has_rows(from)) {
-      gather_rows(from.values, from.node_stride, made_.states, n, in);
-    } else {
-      for (int k = 0; k < made_.states; ++k) {
-        const int entry = made_.state_entries[k];
-        double* const to = in + k * block_nodes;
-        if (entry >= 0)
-          gather_column(from.values + entry * from.component_stride, from.node_stride, n, to);
-        else
-          for (std::int64_t i = 0; i < n.count; ++i) to[i] = 0.0;
-      }
-    }
-    const ilaw_output& to = b_.state_out;
-    v.out = {out, block_nodes, made_.states, 0};
-    if (!n.listed && state_stays(to))
-      v.out = {to.values + n.first * to.node_stride, to.component_stride, made_.states,
-               to.node_stride != 1 ? made_.states : 0};
-    open_frame(v, n, out + made_.states * block_nodes);
+    v.in = place<const double>(b_.state_in, n, state_scratch_);
+    if (v.in.at == state_scratch_) copy_state(b_.state_in.values, b_.state_in, n, state_scratch_);
+    v.out = place<double>(b_.state_out, n, out_scratch());
+    if (!made_.carries_frame) return v;
+    v.frame_in = frame_place<const double>(b_.state_in, n, frame_scratch());
+    if (v.frame_in.at == frame_scratch()) copy_frame(b_.state_in.values, b_.state_in, n, frame_scratch());
+    v.frame_out = frame_place<double>(b_.state_out, n, frame_scratch() + frame_size * block_nodes);
     return v;
   }
-  void open_frame(state_arrays& v, const node_range& n, double* copy) const {
-    if (!made_.carries_frame) return;
-    const std::int64_t at = made_.frame_offset;
-    const ilaw_input& in = b_.state_in;
-    const ilaw_output& out = b_.state_out;
-    if (!n.listed && in.node_stride == 1) {
-      v.frame_in = {in.values + at * in.component_stride + n.first, in.component_stride, 6, 0};
-    } else {
-      for (int k = 0; k < 6; ++k)
-        gather_column(in.values + (at + k) * in.component_stride, in.node_stride, n, copy + k * block_nodes);
-      v.frame_in = {copy, block_nodes, 6, 0};
-    }
-    if (!n.listed && out.node_stride == 1)
-      v.frame_out = {out.values + at * out.component_stride + n.first, out.component_stride, 6, 0};
-    else
-      v.frame_out = {copy + 6 * block_nodes, block_nodes, 6, 0};
+  void close_state(const array<double>& state_out, const array<double>& frame_out,
+                   const node_range& n) const {
+    const double* const frame = frame_scratch() + frame_size * block_nodes;
+    if (made_.state_size == 0) return;
+    if (state_out.at == out_scratch()) copy_state(b_.state_out.values, b_.state_out, n, state_out.at);
+    if (frame_out.at == frame) copy_frame(b_.state_out.values, b_.state_out, n, frame);
+  }
+
+ private:
+  double* out_scratch() const { return state_scratch_ + made_.states * block_nodes; }
+  double* frame_scratch() const { return out_scratch() + made_.states * block_nodes; }
+  template <class T, class Array>
+  array<T> place(const Array& a, const node_range& n, double* copy) const {
+    if (n.listed || !state_stays(a)) return {copy, block_nodes, made_.states, 0};
+    return {a.values + n.first * a.node_stride, a.component_stride, made_.states,
+            a.node_stride != 1 ? made_.states : 0};
+  }
+  template <class T, class Array>
+  array<T> frame_place(const Array& a, const node_range& n, double* copy) const {
+    if (n.listed || a.node_stride != 1) return {copy, block_nodes, frame_size, 0};
+    return {a.values + made_.frame_offset * a.component_stride + n.first, a.component_stride, frame_size, 0};
+  }
+  // Numbers that the host does not have, components beyond the dimension, are zero.
+  template <class T, class Array, class Copy>
+  void copy_state(T* values, const Array& a, const node_range& n, Copy* copy) const {
+    if (has_rows(a)) return copy_rows(values, a.node_stride, made_.states, n, copy);
+    for (int k = 0; k < made_.states; ++k, copy += block_nodes)
+      if (const int entry = made_.state_entries[k]; entry >= 0)
+        copy_nodes<1>(values + entry * a.component_stride, a.node_stride, 0, n, copy);
+      else if constexpr (std::is_const_v<T>)
+        for (std::int64_t i = 0; i < n.count; ++i) copy[i] = 0.0;
+  }
+  template <class T, class Array, class Copy>
+  void copy_frame(T* values, const Array& a, const node_range& n, Copy* copy) const {
+    for (int k = 0; k < frame_size; k += 3)
+      copy_nodes<3>(values + (made_.frame_offset + k) * a.component_stride, a.node_stride, a.component_stride,
+                    n, copy + k * block_nodes);
   }
   // A window is worked on in state_out, which therefore starts as state_in.
   void copy_unnamed(const node_range& n) const {
@@ -132,27 +278,12 @@ class walk_base {
         out.values[n(i) * out.node_stride + c * out.component_stride] =
             in.values[n(i) * in.node_stride + c * in.component_stride];
   }
-  void close_state(const array<double>& state_out, const array<double>& frame_out,
-                   const node_range& n) const {
-    if (made_.state_size == 0) return;
-    const ilaw_output& to = b_.state_out;
-    const double* const out = state_scratch_ + made_.states * block_nodes;
-    if (state_out.at == out && has_rows(to))
-      scatter_rows(to.values, to.node_stride, made_.states, n, out);
-    else if (state_out.at == out)
-      for (int k = 0; k < made_.states; ++k)
-        if (const int entry = made_.state_entries[k]; entry >= 0)
-          scatter_column(to.values + entry * to.component_stride, to.node_stride, n, out + k * block_nodes);
-    const double* const frame = out + made_.states * block_nodes + 6 * block_nodes;
-    if (made_.carries_frame && frame_out.at == frame)
-      for (int k = 0; k < 6; k += 3)
-        scatter_three(to.values + (made_.frame_offset + k) * to.component_stride, to.node_stride,
-                      to.component_stride, n, frame + k * block_nodes);
-  }
 
+ protected:
   const instance_base& made_;
   const ilaw_batch& b_;
   const int d_;
+  const std::uint32_t read_;
   double* const state_scratch_;
 };
 
@@ -167,7 +298,7 @@ class batch_walk : walk_base {
  public:
   // parameter_scratch: block_nodes for each parameter of the law.
   batch_walk(const instance_base& made, const ilaw_batch& batch, double* state_scratch,
-             Number* parameter_scratch)
+             double* parameter_scratch)
       : walk_base(made, batch, state_scratch), parameter_scratch_(parameter_scratch) {}
 
   [[gnu::noinline]] tally run(run_function<Number> loop, const void* law) {
@@ -188,61 +319,72 @@ class batch_walk : walk_base {
 
   // ---- copies of a block
 
-  template <class T>
-  static void prefetch_block(const T* values, std::int64_t stride, std::int64_t component,
-                             const node_range& n) {
-    if (n.listed || component != 1 || stride > 8) return;
-    for (std::int64_t k = 0; k < block_nodes * stride; k += 64 / static_cast<int>(sizeof(T)))
-      __builtin_prefetch(values + (n.first + block_nodes) * stride + k);
+  template <class T, class Array>
+  static void prefetch_block(T* values, const Array& a, const node_range& n) {
+    if (n.listed || a.component_stride != 1 || a.node_stride > 8) return;
+    for (std::int64_t k = 0; k < block_nodes * a.node_stride; k += 64 / static_cast<int>(sizeof(T)))
+      __builtin_prefetch(values + (n.first + block_nodes) * a.node_stride + k);
   }
-  // The numbers of rows, or one column after the other, of an array that stays: calls convert with where they
-  // begin in the host's array and in the copy, and how many follow.
-  template <class T, class Array, class Convert>
-  static void convert_all(T* values, const Array& a, int components, const node_range& n, Convert convert) {
-    const bool rows = a.node_stride != 1;
-    const std::int64_t count = rows ? n.count * components : n.count;
-    for (int c = 0; c < (rows ? 1 : components); ++c) {
-      T* const host = values + c * a.component_stride;
-      for (std::int64_t k = 0; k < count; k += 64 / static_cast<int>(sizeof(T)))
-        __builtin_prefetch(host + count + k);
-      convert(host, std::int64_t{c} * block_nodes, count);
-    }
+  // An array of the host's, to its copy or back. One of other numbers that would stay keeps its order.
+  template <class T, class Array, class Copy>
+  [[gnu::noinline]] static void copy_array(T* values, const Array& a, int components, const node_range& n,
+                                           Copy* copy) {
+    if constexpr (converts)
+      if (!n.listed && stays(a, components)) {
+        const bool rows = a.node_stride != 1;
+        const std::int64_t count = rows ? n.count * components : n.count;
+        for (int c = 0; c < (rows ? 1 : components); ++c, copy += block_nodes) {
+          T* const host = values + n.first * a.node_stride + c * a.component_stride;
+          for (std::int64_t k = 0; k < count; k += 64 / static_cast<int>(sizeof(T)))
+            __builtin_prefetch(host + count + k);
+          if constexpr (std::is_const_v<T>)
+            convert(host, copy, count);
+          else
+            convert(copy, host, count);
+        }
+        return;
+      }
+    prefetch_block(values, a, n);
+    if (components == 3) return copy_nodes<3>(values, a.node_stride, a.component_stride, n, copy);
+    for (int c = 0; c < components; ++c)
+      copy_nodes<1>(values + c * a.component_stride, a.node_stride, 0, n, copy + c * block_nodes);
   }
-
-  array<const Number> gather(const ilaw_input& a, int components, const node_range& n, Number* copy) const {
-    const Host* const values = numbers_in<Host>(a);
-    if (!values) return {};
+  // Where the loop finds an array of the block: at the host's place, or at the copy's.
+  template <class Array>
+  auto place(const Array& a, int components, const node_range& n, Number* copy) const {
+    auto* const values = numbers_in<Host>(a);
+    using found =
+        array<std::conditional_t<std::is_same_v<decltype(values), Host* const>, Number, const Number>>;
+    if (!values) return found{};
     const bool stay = !n.listed && stays(a, components);
     const int rows = stay && a.node_stride != 1 ? components : 0;
     if constexpr (!converts)
-      if (stay) return {values + n.first * a.node_stride, a.component_stride, components, rows};
-    gather_components(values, a, components, n, copy);
-    return {copy, block_nodes, components, rows};
+      if (stay) return found{values + n.first * a.node_stride, a.component_stride, components, rows};
+    return found{copy, block_nodes, components, rows};
   }
-  [[gnu::noinline]] static void gather_components(const Host* values, const ilaw_input& a, int components,
-                                                  const node_range& n, Number* copy) {
-    if constexpr (converts)
-      if (!n.listed && stays(a, components))
-        return convert_all(values + n.first * a.node_stride, a, components, n,
-                           [copy](const Host* from, std::int64_t at, std::int64_t count) {
-                             convert(from, copy + at, count);
-                           });
-    prefetch_block(values, a.node_stride, a.component_stride, n);
-    if (components == 3) return gather_three(values, a.node_stride, a.component_stride, n, copy);
-    for (int c = 0; c < components; ++c)
-      gather_column(values + c * a.component_stride, a.node_stride, n, copy + c * block_nodes);
+  array<const Number> gather(const ilaw_input& a, int components, const node_range& n, Number* copy) const {
+    const array<const Number> placed = place(a, components, n, copy);
+    if (placed.at == copy) copy_array(numbers_in<Host>(a), a, components, n, copy);
+    return placed;
   }
-  const Number* gather_scalar(const ilaw_input& a, const node_range& n, Number* copy) const {
-    return gather(a, 1, n, copy).at;
+  void scatter(const ilaw_output& a, const array<Number>& placed, const node_range& n,
+               const Number* copy) const {
+    if (placed.at == copy) copy_array(numbers_in<Host>(a), a, placed.count, n, copy);
+  }
+  // Parameters are doubles in every loop.
+  const double* gather_parameter(const ilaw_input& a, const node_range& n, double* copy) const {
+    if constexpr (std::is_same_v<Host, double>)
+      if (!n.listed && stays(a, 1)) return a.values + n.first;
+    copy_nodes<1>(numbers_in<Host>(a), a.node_stride, 0, n, copy);
+    return copy;
   }
   // Full in the order of three dimensions, padded so that it stays positive definite.
   array<const Number> gather_delassus(const node_range& n) {
     const int numbers = made_.delassus_numbers();
     if (made_.is_transverse() || d_ == 3) return gather(b_.delassus, numbers, n, s_.delassus);
-    const Host* const values = numbers_in<Host>(b_.delassus);
     const auto take = [&](int from, int to) {
-      gather_column(values + from * b_.delassus.component_stride, b_.delassus.node_stride, n,
-                    s_.delassus + to * block_nodes);
+      copy_nodes<1>(numbers_in<Host>(b_.delassus) + from * b_.delassus.component_stride,
+                    b_.delassus.node_stride, 0, n, s_.delassus + to * block_nodes);
     };
     take(0, 0);
     take(d_ > 1 ? 1 : 0, 1);
@@ -250,31 +392,6 @@ class batch_walk : walk_base {
     for (int k = 3 * block_nodes; k < 6 * block_nodes; ++k) s_.delassus[k] = 0;
     if (numbers == 3) take(2, 3);
     return {s_.delassus, block_nodes, 6, 0};
-  }
-  array<Number> aim(const ilaw_output& a, int components, const node_range& n, Number* copy) const {
-    Host* const values = numbers_in<Host>(a);
-    if (!values) return {};
-    const bool stay = !n.listed && stays(a, components);
-    const int rows = stay && a.node_stride != 1 ? components : 0;
-    if constexpr (!converts)
-      if (stay) return {values + n.first * a.node_stride, a.component_stride, components, rows};
-    return {copy, block_nodes, components, rows};
-  }
-  void scatter(const ilaw_output& a, const array<Number>& aimed, const node_range& n,
-               const Number* copy) const {
-    if (aimed.at == copy) scatter_components(numbers_in<Host>(a), a, aimed.count, n, copy);
-  }
-  [[gnu::noinline]] static void scatter_components(Host* values, const ilaw_output& a, int components,
-                                                   const node_range& n, const Number* copy) {
-    if constexpr (converts)
-      if (!n.listed && stays(a, components))
-        return convert_all(
-            values + n.first * a.node_stride, a, components, n,
-            [copy](Host* to, std::int64_t at, std::int64_t count) { convert(copy + at, to, count); });
-    prefetch_block(values, a.node_stride, a.component_stride, n);
-    if (components == 3) return scatter_three(values, a.node_stride, a.component_stride, n, copy);
-    for (int c = 0; c < components; ++c)
-      scatter_column(values + c * a.component_stride, a.node_stride, n, copy + c * block_nodes);
   }
 
   void run_with_windows(view<Number>& v, const node_range& n, run_function<Number> loop, const void* law,
@@ -300,38 +417,23 @@ class batch_walk : walk_base {
   // ---- a part of the batch
 
   void open_inputs(view<Number>& v, const node_range& n) {
-    v.v_free = gather(b_.v_free, d_, n, s_.v_free);
-    if (reads_smooth()) v.v_smooth = gather(b_.v_smooth, d_, n, s_.v_smooth);
-    const bool has_balance = wants_balance(made_, b_);
-    const std::uint32_t read = made_.inputs | (has_balance ? made_.balance_inputs : 0U);
-    if (v.reads_previous || has_balance) v.v_previous = gather(b_.v_previous, d_, n, s_.v_previous);
-    if (made_.frame == ILAW_FRAME_GLOBAL) v.normal = gather(b_.normal, d_, n, s_.normal);
-    if (made_.inputs & ILAW_INPUT_TANGENT) v.tangent = gather(b_.tangent, d_, n, s_.tangent);
+    const auto open = [&](const array_card& card, const ilaw_input& a, auto& to, Number* copy) {
+      if (card.is_in(read_)) to = gather(a, card.count(d_), n, copy);
+    };
+    for_inputs(open, b_, v, s_);
     v.delassus = gather_delassus(n);
-    if (made_.has_spins()) {
-      v.spin_free = gather(b_.spin_free, 3, n, s_.spin_free);
-      if (v.v_previous.at) v.spin_previous = gather(b_.spin_previous, 3, n, s_.spin_previous);
-    }
-    if (made_.inputs & ILAW_INPUT_GAP) {
-      v.gap = gather_scalar(b_.gap, n, s_.gap);
-      v.gap_offset = gather_scalar(b_.gap_offset, n, s_.gap_offset);
-    }
-    if (read & ILAW_INPUT_AREA) v.area = gather_scalar(b_.area, n, s_.area);
     for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
       v.parameters[made_.per_node_parameters[k]] =
-          gather_scalar(b_.per_node_parameters[k], n, parameter_scratch_ + k * block_nodes);
+          gather_parameter(b_.per_node_parameters[k], n, parameter_scratch_ + k * block_nodes);
   }
   void open_outputs(view<Number>& v, const node_range& n) {
-    v.impulse = aim(b_.impulse, d_, n, s_.impulse);
-    v.velocity = aim(b_.velocity, d_, n, s_.velocity);
-    v.energy = aim(b_.energy, ILAW_ENERGY_COUNT, n, s_.energy);
-    if (made_.has_spins()) {
-      v.moment = aim(b_.moment, 3, n, s_.moment);
-      v.spin = aim(b_.spin, 3, n, s_.spin);
-    }
+    const auto open = [&](const array_card& card, const ilaw_output& a, auto& to, Number* copy) {
+      if (card.is_in(read_)) to = place(a, card.count(d_), n, copy);
+    };
+    for_outputs(open, b_, v, s_);
     if (b_.status) v.status = status_stays(n) ? b_.status + n.first : s_.status;
     for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k) {
-      v.amounts[k] = aim(b_.amounts[k], 1, n, s_.amounts[k]).at;
+      v.amounts[k] = place(b_.amounts[k], 1, n, s_.amounts[k]).at;
       v.has_amounts = v.has_amounts || v.amounts[k];
     }
     v.moves = v.velocity.at || v.spin.at || v.energy.at || v.status || v.has_amounts;
@@ -359,13 +461,10 @@ class batch_walk : walk_base {
       loop(law, v, found);
     }
     add(all, found, n);
-    scatter(b_.impulse, v.impulse, n, s_.impulse);
-    scatter(b_.velocity, v.velocity, n, s_.velocity);
-    if (made_.has_spins()) {
-      scatter(b_.moment, v.moment, n, s_.moment);
-      scatter(b_.spin, v.spin, n, s_.spin);
-    }
-    scatter(b_.energy, v.energy, n, s_.energy);
+    const auto close = [&](const array_card&, const ilaw_output& a, const auto& from, const Number* copy) {
+      scatter(a, from, n, copy);
+    };
+    for_outputs(close, b_, v, s_);
     if (v.status == s_.status)
       for (std::int64_t i = 0; i < n.count; ++i) b_.status[n(i) * b_.status_stride] = s_.status[i];
     for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k)
@@ -394,7 +493,7 @@ class batch_walk : walk_base {
     std::uint8_t status[block_nodes];
   };
 
-  Number* const parameter_scratch_;
+  double* const parameter_scratch_;
   scratch s_;
 };
 

@@ -52,8 +52,9 @@ struct device_options : view_options {
   const std::int32_t* index;
   const std::int64_t* index64;
   std::int32_t index_base, delassus_numbers;
-  device_array v_free, v_smooth, v_previous, normal, tangent, delassus, gap, gap_offset, area;
-  device_array impulse, velocity, energy, state_in, state_out, frame_in, frame_out, status;
+  device_array v_free, v_smooth, v_previous, normal, tangent, delassus, gap, gap_offset, area, spin_free,
+      spin_previous;
+  device_array impulse, velocity, moment, spin, energy, state_in, state_out, frame_in, frame_out, status;
   std::uint8_t* reasons;  // by position in the batch, as the next; null: not asked for
   double* limits;         // three each: step_limit
 };

@@ -135,26 +135,17 @@ class device_writer {
     to_.delassus_numbers = !made_.is_transverse() && d == 2 && numbers == 3 ? full_in_plane : numbers;
   }
   void write_inputs() {
-    const bool has_balance = wants_balance(made_, b_);
-    const std::uint32_t read = made_.inputs | (has_balance ? made_.balance_inputs : 0U);
-    to_.v_free = numbers(b_.v_free);
+    const std::uint32_t read = inputs_read(made_, b_);
+    const auto write = [&](const array_card& card, const ilaw_input& a, device_array& to) {
+      if (card.is_in(read)) to = numbers(a);
+    };
+    for_inputs(write, b_, to_);
     to_.delassus = numbers(b_.delassus);
-    if (made_.inputs & ILAW_INPUT_V_SMOOTH) to_.v_smooth = numbers(b_.v_smooth);
-    if (to_.reads_previous || has_balance) to_.v_previous = numbers(b_.v_previous);
-    if (made_.frame == ILAW_FRAME_GLOBAL) to_.normal = numbers(b_.normal);
-    if (made_.inputs & ILAW_INPUT_TANGENT) to_.tangent = numbers(b_.tangent);
-    if (made_.inputs & ILAW_INPUT_GAP) {
-      to_.gap = numbers(b_.gap);
-      to_.gap_offset = numbers(b_.gap_offset);
-    }
-    if (read & ILAW_INPUT_AREA) to_.area = numbers(b_.area);
     for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
       to_.parameters[made_.per_node_parameters[k]] = numbers(b_.per_node_parameters[k]);
   }
   void write_outputs() {
-    to_.impulse = numbers(b_.impulse);
-    to_.velocity = numbers(b_.velocity);
-    to_.energy = numbers(b_.energy);
+    for_outputs([&](const array_card&, const ilaw_output& a, device_array& to) { to = numbers(a); }, b_, to_);
     to_.status = {b_.status, b_.status_stride, 0};
     for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k) {
       to_.amounts[k] = numbers(b_.amounts[k]);

@@ -99,18 +99,13 @@ ILAW_KIT_INLINE view<at_node<Law, Number>> view_of(const device_arguments<Law>& 
   view<at_node<Law, Number>> v{};
   static_cast<view_options&>(v) = a;
   v.count = 1;
-  v.v_free = array_at<const Number>(a.v_free, node, a.dimension);
-  v.v_smooth = array_at<const Number>(a.v_smooth, node, a.dimension);
-  v.v_previous = array_at<const Number>(a.v_previous, node, a.dimension);
-  v.normal = array_at<const Number>(a.normal, node, a.dimension);
-  v.tangent = array_at<const Number>(a.tangent, node, a.dimension);
+  const auto open = [&](const array_card& card, const device_array& from, auto& to) ILAW_KIT_LAMBDA {
+    to = {place_in<std::remove_pointer_t<decltype(to.at)>>(from, node), from.component_stride,
+          card.count(a.dimension)};
+  };
+  for_inputs(open, a, v);
+  for_outputs(open, a, v);
   v.delassus = array_at<const Number>(a.delassus, node, a.delassus_numbers);
-  v.gap = array_at<const Number>(a.gap, node, 1).at;
-  v.gap_offset = array_at<const Number>(a.gap_offset, node, 1).at;
-  v.area = array_at<const Number>(a.area, node, 1).at;
-  v.impulse = array_at<Number>(a.impulse, node, a.dimension);
-  v.velocity = array_at<Number>(a.velocity, node, a.dimension);
-  v.energy = array_at<Number>(a.energy, node, ILAW_ENERGY_COUNT);
   v.status = array_at<std::uint8_t>(a.status, node, 1).at;
   v.state_in = state_at<Law, const double>(a.state_in, node, a.dimension);
   v.state_out = state_at<Law, double>(a.state_out, node, a.dimension);
