@@ -3,7 +3,7 @@
 
 #include "../bond/bond.hpp"
 
-#include <ilaw/kit/heat.hpp>
+#include <ilaw/kit/law.hpp>
 #include <ilaw/kit/plugin.hpp>
 
 namespace {

@@ -1,7 +1,7 @@
 // Elastic grains that adhere, rub by Mindlin's spring, and resist rolling. See grain.md for the equations.
 #include "contact_circle.hpp"
 
-#include <ilaw/kit/heat.hpp>
+#include <ilaw/kit/law.hpp>
 #include <ilaw/kit/plugin.hpp>
 #include <ilaw/kit/rolling.hpp>
 #include <ilaw/kit/tangential_spring.hpp>

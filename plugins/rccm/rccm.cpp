@@ -1,7 +1,7 @@
 // RCCM: adhesion that viscosity delays, with contact and friction. See rccm.md for the equations.
 #include "../bond/bond.hpp"
 
-#include <ilaw/kit/heat.hpp>
+#include <ilaw/kit/law.hpp>
 #include <ilaw/kit/plugin.hpp>
 
 namespace {

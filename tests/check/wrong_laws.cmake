@@ -58,7 +58,7 @@ ilaw_add_wrong_law(rolling_velocity rolling api/include/ilaw/kit/symmetric.hpp
                    "return transverse<V>::times(r) - k * q.tangential_part();"
                    "return transverse<V>::times(r) - 0.0 * k * q.tangential_part();")
 # Does not turn its history with the normal.
-ilaw_add_wrong_law(postit_unturned postit api/include/ilaw/kit/detail/load_node.hpp
+ilaw_add_wrong_law(postit_unturned postit api/include/ilaw/kit/detail/frame.hpp
                    "f.t1 = transported_tangent(n, t, f.n);" "f.t1 = any_tangent(f.n);")
 # Moves its bond by the velocity without its impulse, which is the one before the step only where no force acts.
 ilaw_add_wrong_law(rccm_force rccm plugins/bond/bond_step.hpp "p_.state.opening + V(0.5 * step) * p_.v_previous;"

@@ -3,7 +3,7 @@
 
 #include "support/random.hpp"
 
-#include <ilaw/kit/exact_coulomb.hpp>
+#include <ilaw/kit/local_coulomb.hpp>
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // measure does not add to what it measures.
 #pragma once
 
-#include <ilaw/kit/exact_coulomb.hpp>
+#include <ilaw/kit/local_coulomb.hpp>
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <ilaw/kit/contact.hpp>
-#include <ilaw/kit/exact_coulomb.hpp>
+#include <ilaw/kit/local_coulomb.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 

@@ -8,7 +8,7 @@
 //   is    card, references, parameters       what it is called, serves and reads
 //         state, state_variables             named memory (state.hpp)
 //         history                            what its window is called in the state
-//         amounts                            scalars that it gives per node and step; heat.hpp has some
+//         amounts                            scalars that it gives per node and step; heat and wear are below
 //   does  step(node)                         its equations in closed form; returns the status
 //         problem, answer                    where a solver is needed, structs whose members are V, for the step
 //                                            in parts:
@@ -254,7 +254,7 @@ using state_t = typename detail::state_of<Law>::type;
 template <class Law>
 inline constexpr int state_numbers =
     has_state<Law> ? static_cast<int>(sizeof(state_t<Law>) / sizeof(typename number_of_law<Law>::type)) : 0;
-// See heat.hpp.
+// See below.
 template <class Law>
 concept gives_heat = requires(const Law& law) {
   law.heat_partition;
@@ -287,5 +287,37 @@ template <class Law>
 inline constexpr bool reads(std::uint32_t input) {
   return (Law::card.inputs & input) != 0;
 }
+
+// ---- heat and wear of what slides
+
+// A law whose parameters have the members heat_partition and wear_coefficient gives three amounts after its
+// own, which the kit computes where a host asks for them.
+
+template <class Law>
+constexpr parameter<Law> heat_partition_parameter(typename number_of_law<Law>::type Law::*member) {
+  return {.member = member,
+          .name = "heat_partition",
+          .symbol = "eta",
+          .doc = "Part of the frictional heat that flows into the body; the rest flows into its counterpart.",
+          .default_value = 0.5,
+          .maximum = 1.0};
+}
+template <class Law>
+constexpr parameter<Law> wear_coefficient_parameter(typename number_of_law<Law>::type Law::*member) {
+  return {.member = member,
+          .name = "wear_coefficient",
+          .symbol = "k_w",
+          .unit = "m^2/N",
+          .doc = "Depth taken off per pressure and slip (Archard 1953)."};
+}
+
+namespace detail {
+
+inline constexpr amount_card heat_amounts[] = {
+    {.name = "heat", .unit = "J", .doc = "Frictional heat of the step into the body."},
+    {.name = "counterpart_heat", .unit = "J", .doc = "The same into the counterpart."},
+    {.name = "wear", .unit = "m", .doc = "Depth taken off in the step: k_w p |v_T| h."}};
+
+}  // namespace detail
 
 }  // namespace ilaw::kit

@@ -30,27 +30,20 @@ run_function<double> loop_of(const instance<Law>& made) {
   }
 }
 
+template <class Law, template <class> class Delassus>
+run_function<double> choose_frame(const instance<Law>& made) {
+  if (made.frame == ILAW_FRAME_LOCAL) return loop_of<Law, local_frame, Delassus>(made);
+  if constexpr (needs_no_tangents<Law> && !std::is_same_v<Delassus<double>, full<double>>)
+    if (made.dimension == 3 && !made.has_tangent) return loop_of<Law, normal_frame, Delassus>(made);
+  return loop_of<Law, axes_frame, Delassus>(made);
+}
 template <class Law>
 run_function<double> choose_loop(const instance<Law>& made) {
-  const bool is_local = made.frame == ILAW_FRAME_LOCAL;
   if constexpr (serves_spins<Law>)
-    if (made.has_spins()) {
-      if (is_local) return loop_of<Law, local_frame, transverse_spin>(made);
-      if constexpr (needs_no_tangents<Law>)
-        if (!made.has_tangent) return loop_of<Law, normal_frame, transverse_spin>(made);
-      return loop_of<Law, axes_frame, transverse_spin>(made);
-    }
+    if (made.has_spins()) return choose_frame<Law, transverse_spin>(made);
   if constexpr (serves_transverse<Law>)
-    if (made.is_transverse()) {
-      if (is_local) return loop_of<Law, local_frame, transverse>(made);
-      if constexpr (needs_no_tangents<Law>)
-        if (made.dimension == 3 && !made.has_tangent) return loop_of<Law, normal_frame, transverse>(made);
-      return loop_of<Law, axes_frame, transverse>(made);
-    }
-  if constexpr (serves_full<Law>) {
-    if (is_local) return loop_of<Law, local_frame, full>(made);
-    return loop_of<Law, axes_frame, full>(made);
-  }
+    if (made.is_transverse()) return choose_frame<Law, transverse>(made);
+  if constexpr (serves_full<Law>) return choose_frame<Law, full>(made);
   return nullptr;
 }
 // Floats have a loop of their own where a node takes so little that to convert them by blocks would count: in

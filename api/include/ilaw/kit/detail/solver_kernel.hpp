@@ -237,8 +237,8 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
 
   // One pack, asked for its problems or, where finishing, with the answers to them. False: it has a bad node.
   ILAW_KIT_INLINE static bool run_pack(const Wide& law, const prepared_t<Wide>& prepared, const view_type& b,
-                                       std::int64_t i, checks_type c, problems_type& all, const pass& at,
-                                       tally& found, limit& limits, std::int64_t node) {
+                                       std::int64_t i, checks_type c, tally& found, limit& limits,
+                                       std::int64_t node, problems_type& all, const pass& at) {
     loaded p = base::load_pack(prepared, b, i, c, at.finishing && !careful);
     base::take_state(p.node, b, i, c);
     const mask bad_input = c.bad(), nodes = base::nodes_of(b);
@@ -311,21 +311,11 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     a.refused = select(first, a.refused, b.refused);
   }
 
-  [[gnu::noinline, gnu::cold, gnu::flatten]] static void run_copy(const Law& given, const view_type& b,
-                                                                  std::int64_t node, problems_type& all,
-                                                                  const pass& at, tally& found,
-                                                                  limit& limits) {
-    Wide law = broadcast<V>(given);
-    checks_type c;
-    if (b.varying) c.require(take_parameters(law, given, b, 0), reason_parameter);
-    const auto prepared = kit::prepared(law, b.step);
-    run_pack(law, prepared, b, 0, c, all, at, found, limits, node);
-  }
   [[gnu::noinline, gnu::cold]] static void run_carefully(const Law& given, const view_type& b, std::int64_t i,
                                                          problems_type& all, const pass& at, tally& found,
                                                          limit& limits) {
     const pack_copy copy(b, i, width);
-    careful_kernel::run_copy(given, copy.pack, i, all, at, found, limits);
+    careful_kernel::template run_copy<careful_kernel>(given, copy.pack, i, found, limits, all, at);
     if (at.finishing) copy.give_back(b);
   }
 
@@ -349,7 +339,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
             bool is_usual = i + width <= end && !(at.finishing && all.state[at.k] == pack_state::careful);
             if (is_usual && b.varying + b.in_memory) [[unlikely]]
               is_usual = base::get_ready(law, prepared, given, b, i);
-            is_done = is_usual && run_pack(law, prepared, b, i, checks_type(), all, at, found, limits, i);
+            is_done = is_usual && run_pack(law, prepared, b, i, checks_type(), found, limits, i, all, at);
           }
           if (!is_done) [[unlikely]]
             run_carefully(given, b, i, all, at, found, limits);
