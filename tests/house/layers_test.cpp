@@ -122,7 +122,7 @@ TEST(Layers, EveryFolderOfTheHostIsAFloor) {
 const std::vector<std::vector<std::string>> kit_rooms = {
     {"pack", "math", "vector", "symmetric", "roots", "table"},
     {"law", "state", "node"},
-    {"contact", "heat", "regular_coulomb", "exact_coulomb", "friction", "changing_friction",
+    {"contact", "local_coulomb", "friction", "changing_friction",
      "tangential_spring", "rolling", "rigid_bond", "window"},
     {"plugin"}};
 
@@ -144,7 +144,7 @@ std::vector<std::string> kit_includes_of(const fs::path& file) {
 }
 
 // Numbers know nothing of laws, laws nothing of mechanics; the machinery is included by the entry alone, but
-// for the level that packs are compiled for, and the places of the numbers of a window.
+// for the level that packs are compiled for, and packs in memory, where windows stand.
 TEST(Layers, RoomsOfTheKitStandOnEachOther) {
   const fs::path include = fs::path(ILAW_SOURCE) / "api/include";
   for (const auto& entry : fs::directory_iterator(include / "ilaw/kit")) {
@@ -154,7 +154,7 @@ TEST(Layers, RoomsOfTheKitStandOnEachOther) {
     for (const std::string& header : kit_includes_of(entry.path())) {
       if (header.starts_with("ilaw/kit/detail/") || header.starts_with("ilaw/kit/device/"))
         EXPECT_TRUE(name.ends_with("/plugin.hpp") || header.ends_with("/level.hpp") ||
-                    header.ends_with("/window_values.hpp"))
+                    header.ends_with("/load_store.hpp"))
             << name << ": " << header;
       else
         EXPECT_LE(room_of(header), room_of(name)) << name << ": " << header;

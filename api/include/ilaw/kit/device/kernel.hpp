@@ -306,7 +306,7 @@ ILAW_KIT_INLINE void run_node(const device_arguments<Law>& a, std::int64_t k) {
 // The kernels of a library: nothing where a law has no such variant.
 template <std::size_t Size>
 struct alignas(8) device_block {
-  unsigned char bytes[Size];
+  std::uint64_t words[(Size + 7) / 8];  // by bytes a compiler would load each alone
 };
 template <template <class> class... Laws>
 using device_block_of = device_block<std::max({sizeof(device_arguments<Laws<double>>)...})>;
