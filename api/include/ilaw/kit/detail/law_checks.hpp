@@ -85,20 +85,16 @@ constexpr bool state_is_covered() {
 
 // ---- calls, of which only the types are named: no body is compiled for them
 
-struct step_call {
-  template <class Law, class Node>
-  auto operator()(Law& law, Node&& node) const -> decltype(law.step(std::forward<Node>(node)));
-};
-struct ask_call {
-  template <class Law, class Node>
-  auto operator()(Law& law, Node&& node) const
-      -> decltype(law.ask(std::forward<Node>(node), std::declval<typename Law::problem&>()));
-};
-struct finish_call {
-  template <class Law, class Node>
-  auto operator()(Law& law, Node&& node) const
-      -> decltype(law.finish(std::forward<Node>(node), std::declval<const typename Law::answer&>()));
-};
+#define ILAW_KIT_CALL(name, ...)                                                    \
+  struct name##_call {                                                              \
+    template <class Law, class Node>                                                \
+    auto operator()(Law& law, Node&& node) const                                    \
+        -> decltype(law.name(std::forward<Node>(node) __VA_OPT__(, ) __VA_ARGS__)); \
+  }
+ILAW_KIT_CALL(step);
+ILAW_KIT_CALL(ask, std::declval<typename Law::problem&>());
+ILAW_KIT_CALL(finish, std::declval<const typename Law::answer&>());
+#undef ILAW_KIT_CALL
 // A function that takes a copy of its node, or one that it may not write, changes nothing.
 template <class Call, class Result, class Law, class Node>
 inline constexpr bool fits = requires(const Law& law, Node& node, Call call) {
@@ -148,20 +144,20 @@ concept solves_one = requires(const Law& law, const typename Law::problem& p, ty
 // ---- the checks
 
 // Where the law has something: the line that says what to write unless the condition on it holds.
-#define ILAW_KIT_CHECK(has, text, ...)       \
+#define ILAW_KIT_WHERE(has, text, ...)       \
   if constexpr (has) {                       \
     constexpr bool is_right = (__VA_ARGS__); \
     static_assert(is_right, text);           \
     passes = passes && is_right;             \
   }
+#define ILAW_KIT_CHECK(text, ...) ILAW_KIT_WHERE(true, text, __VA_ARGS__)
 // A function that a law need not have.
-#define ILAW_KIT_FUNCTION(name, result)                                                             \
-  ILAW_KIT_CHECK(                                                                                   \
-      names_##name<Law>, #name " must be " #result " " #name "() const", requires(const Law& law) { \
-        { law.name() } -> std::same_as<result>;                                                     \
-      })
+#define ILAW_KIT_FUNCTION(name, result)                                  \
+  ILAW_KIT_WHERE(                                                        \
+      names_##name<Law>, #name " must be " #result " " #name "() const", \
+      requires(const Law& law) { requires std::is_same_v<decltype(law.name()), result>; })
 #define ILAW_KIT_SPELLED(wrong, right) \
-  ILAW_KIT_CHECK(true, "the kit calls no '" #wrong "': write " right, !names_##wrong<Law>)
+  ILAW_KIT_CHECK("the kit calls no '" #wrong "': write " right, !names_##wrong<Law>)
 
 template <class Law>
 constexpr bool spells_rightly() {
@@ -174,25 +170,23 @@ template <class Law>
 constexpr bool passes_names() {
   bool passes = true;
   ILAW_KIT_CHECK(
-      true, "a law needs static constexpr law_card card{.id = ..., .title = ..., .doc = ...}",
+      "a law needs static constexpr law_card card{.id = ..., .title = ..., .doc = ...}",
       requires { requires std::is_same_v<decltype(Law::card), const law_card>; })
   ILAW_KIT_CHECK(
-      true, "a law needs static constexpr const char* references[] = {...}: where its equations are from",
+      "a law needs static constexpr const char* references[] = {...}: where its equations are from",
       names_references<Law>)
-  ILAW_KIT_CHECK(true,
-                 "a law needs static constexpr parameter<Law> parameters[] = {{.member = &Law::name, ...}}",
+  ILAW_KIT_CHECK("a law needs static constexpr parameter<Law> parameters[] = {{.member = &Law::name, ...}}",
                  names_parameters<Law>)
-  ILAW_KIT_CHECK(true, "a law needs template <class Node> status_of<V> step(Node& node) const",
+  ILAW_KIT_CHECK("a law needs template <class Node> status_of<V> step(Node& node) const",
                  names_step<Law> || names_ask<Law>)
-  ILAW_KIT_CHECK(true,
-                 "a memory is struct state and static constexpr state_variable<state> state_variables[]",
+  ILAW_KIT_CHECK("a memory is struct state and static constexpr state_variable<state> state_variables[]",
                  names_state<Law> == names_state_variables<Law>)
   constexpr int parts = names_problem<Law> + names_answer<Law> + names_ask<Law> + names_solve<Law> +
                         names_solve_scalar<Law> + names_finish<Law>;
-  ILAW_KIT_CHECK(parts != 0,
+  ILAW_KIT_WHERE(parts != 0,
                  "a solver is problem, answer, ask, solve, solve_scalar and finish: one of them is missing",
                  parts == 6)
-  ILAW_KIT_CHECK(names_asks<Law>, "asks chooses between step and ask: the law has one of them alone",
+  ILAW_KIT_WHERE(names_asks<Law>, "asks chooses between step and ask: the law has one of them alone",
                  names_step<Law> && names_ask<Law>)
   return passes;
 }
@@ -206,81 +200,73 @@ constexpr bool passes_members() {
   constexpr std::uint32_t inputs = reads_gap | reads_v_previous | reads_v_smooth | reads_area;
   constexpr std::uint32_t forms = Law::card.delassus_forms;
 
-  ILAW_KIT_CHECK(true, "the card of a law needs .id, .title and .doc",
+  ILAW_KIT_CHECK("the card of a law needs .id, .title and .doc",
                  Law::card.id && Law::card.title && Law::card.doc)
   ILAW_KIT_CHECK(
-      true, ".inputs of the card are reads_gap, reads_v_previous, reads_v_smooth and reads_area, joined by |",
+      ".inputs of the card are reads_gap, reads_v_previous, reads_v_smooth and reads_area, joined by |",
       (Law::card.inputs & ~inputs) == 0)
-  ILAW_KIT_CHECK(true, "the card of a law serves at least one dimension and one form of H",
+  ILAW_KIT_CHECK("the card of a law serves at least one dimension and one form of H",
                  Law::card.dimensions != 0 && forms != 0)
-  ILAW_KIT_CHECK((forms & ILAW_DELASSUS_DIAGONAL) != 0,
+  ILAW_KIT_WHERE((forms & ILAW_DELASSUS_DIAGONAL) != 0,
                  "a card that serves a diagonal H serves a full one, too: in the host's axes it is full",
                  (forms & ILAW_DELASSUS_FULL) != 0)
-  ILAW_KIT_CHECK(true, "a parameter needs .member = &Law::name and .name = \"name\"",
+  ILAW_KIT_CHECK("a parameter needs .member = &Law::name and .name = \"name\"",
                  all_of(Law::parameters, [](const auto& p) { return p.member.is_given() && p.name; }))
-  ILAW_KIT_CHECK(true, "two parameters have the same .member: each needs one of its own",
+  ILAW_KIT_CHECK("two parameters have the same .member: each needs one of its own",
                  differ(Wide::parameters, [](const auto& p) { return p.member; }))
-  ILAW_KIT_CHECK(true,
-                 "a law's members are its parameters, V, double or grid: each needs an entry of parameters[]",
+  ILAW_KIT_CHECK("a law's members are its parameters, V, double or grid: each needs an entry of parameters[]",
                  sizeof(Law) == sizeof(double) * std::size(Law::parameters))
-  ILAW_KIT_CHECK(true, "a law has at most 32 parameters", parameter_count<Law> <= most_parameters)
-  ILAW_KIT_CHECK(true, "a choice or whole number is the same at all nodes: its member is a double, not a V",
+  ILAW_KIT_CHECK("a law has at most 32 parameters", parameter_count<Law> <= most_parameters)
+  ILAW_KIT_CHECK("a choice or whole number is the same at all nodes: its member is a double, not a V",
                  all_of(Wide::parameters, [](const auto& p) {
                    return !(p.choices.count > 0 || p.whole) || !p.member.may_vary();
                  }))
-  ILAW_KIT_CHECK(true, "a field differs from node to node: its member is a V",
+  ILAW_KIT_CHECK("a field differs from node to node: its member is a V",
                  all_of(Wide::parameters, [](const auto& p) { return !p.is_field || p.member.may_vary(); }))
-  ILAW_KIT_CHECK(true, "a table is over \"time\" or a field, a parameter with .is_field = true",
+  ILAW_KIT_CHECK("a table is over \"time\" or a field, a parameter with .is_field = true",
                  axes_are_known<Law>())
   if constexpr (has_state<Law>) {
     constexpr bool is_of_V = all_of_V<typename Wide::state, typename Two::state>;
-    ILAW_KIT_CHECK(true, "the members of struct state must be V, vector<V> or tangential_vector<V>", is_of_V)
-    ILAW_KIT_CHECK(true, "a state variable needs .member = &state::name and .name = \"name\"",
+    ILAW_KIT_CHECK("the members of struct state must be V, vector<V> or tangential_vector<V>", is_of_V)
+    ILAW_KIT_CHECK("a state variable needs .member = &state::name and .name = \"name\"",
                    all_of(Law::state_variables, [](const auto& v) { return v.member.is_given() && v.name; }))
-    ILAW_KIT_CHECK(is_of_V, "every member of struct state needs an entry of state_variables[]",
+    ILAW_KIT_WHERE(is_of_V, "every member of struct state needs an entry of state_variables[]",
                    state_is_covered<Law>())
   }
   if constexpr (names_ask<Law>) {
-    ILAW_KIT_CHECK(true, "the members of problem and answer must all be of type V",
+    ILAW_KIT_CHECK("the members of problem and answer must all be of type V",
                    all_of_V<typename Wide::problem, typename Two::problem> &&
                        all_of_V<typename Wide::answer, typename Two::answer>)
     ILAW_KIT_CHECK(
-        true,
         "solve must be mask_of<V> solve(const problem& p, answer& a) const, and solve_scalar the same without "
         "result; both may take what prepare gave as well",
         (solves_lanes<Two> || solves_lanes<Two, prepared_t<Two>>)&&(solves_one<Law> ||
                                                                     solves_one<Law, prepared_t<Law>>))
   }
-  ILAW_KIT_CHECK(
+  ILAW_KIT_WHERE(
       names_asks<Law>, "asks must be bool asks() const or bool asks(bool is_transverse) const",
-      requires(const Law& law) {
-        { law.asks() } -> std::same_as<bool>;
-      } ||
-          requires(const Law& law) {
-            { law.asks(true) } -> std::same_as<bool>;
-          })
+      requires(const Law& law) { requires std::is_same_v<decltype(law.asks()), bool>; } ||
+          requires(const Law& law) { requires std::is_same_v<decltype(law.asks(true)), bool>; })
   ILAW_KIT_FUNCTION(conflict, const char*)
   ILAW_KIT_FUNCTION(inputs, std::uint32_t)
   ILAW_KIT_FUNCTION(capabilities, std::uint32_t)
   ILAW_KIT_FUNCTION(permissions, std::uint32_t)
   ILAW_KIT_FUNCTION(tells_tangents_apart, bool)
-  ILAW_KIT_CHECK(
+  ILAW_KIT_WHERE(
       names_prepare<Law>, "prepare must be auto prepare(const step_sizes& step) const",
       requires(const Law& law, const step_sizes& s) { law.prepare(s); })
-  ILAW_KIT_CHECK(
+  ILAW_KIT_WHERE(
       names_initialise<Law>, "initialise must be template <class Node> void initialise(Node& node) const",
       requires(const Law& law, initial_node<Law>& n) { law.initialise(n); })
-  ILAW_KIT_CHECK(
+  ILAW_KIT_WHERE(
       names_extension<Law>, "extension must be static const void* extension(const char* name)",
-      requires(const char* s) {
-        { Law::extension(s) } -> std::same_as<const void*>;
-      })
-  ILAW_KIT_CHECK(names_amounts<Law>, "amounts must be static constexpr amount_card amounts[], at most eight",
+      requires(const char* s) { requires std::is_same_v<decltype(Law::extension(s)), const void*>; })
+  ILAW_KIT_WHERE(names_amounts<Law>, "amounts must be static constexpr amount_card amounts[], at most eight",
                  std::is_same_v<std::remove_cvref_t<decltype(Law::amounts[0])>, amount_card> &&
                      amount_count<Law> <= most_amounts)
   constexpr bool has_any_history =
       names_history<Law> || names_window<Law> || names_adds_to_window<Law> || names_clears_window<Law>;
-  ILAW_KIT_CHECK(
+  ILAW_KIT_WHERE(
       has_any_history,
       "a history is static constexpr history_card history and window() const with static bool "
       "adds_to_window(ilaw_status) and clears_window(ilaw_status)",
@@ -297,24 +283,24 @@ constexpr bool passes_members() {
 template <class Law>
 constexpr bool passes_nodes() {
   bool passes = true;
-  ILAW_KIT_CHECK(has_state<Law>, "two state variables have the same .member: each needs one of its own",
+  ILAW_KIT_WHERE(has_state<Law>, "two state variables have the same .member: each needs one of its own",
                  differ(Law::state_variables, [](const auto& v) { return v.member.place(); }))
-  ILAW_KIT_CHECK(true, "no step or ask takes the nodes of a form of H that .delassus_forms of the card names",
+  ILAW_KIT_CHECK("no step or ask takes the nodes of a form of H that .delassus_forms of the card names",
                  all_nodes<Law>([](auto call) { return call.steps || call.asks; }))
-  ILAW_KIT_CHECK(true, "step must be template <class Node> status_of<V> step(Node& node) const",
+  ILAW_KIT_CHECK("step must be template <class Node> status_of<V> step(Node& node) const",
                  all_nodes<Law>([](auto call) { return call.step_fits; }))
-  ILAW_KIT_CHECK(true, "ask must be template <class Node> asked<V> ask(Node& node, problem& open) const",
+  ILAW_KIT_CHECK("ask must be template <class Node> asked<V> ask(Node& node, problem& open) const",
                  all_nodes<Law>([](auto call) { return call.ask_fits; }))
   ILAW_KIT_CHECK(
-      true, "finish must be template <class Node> status_of<V> finish(Node& node, const answer& a) const",
+      "finish must be template <class Node> status_of<V> finish(Node& node, const answer& a) const",
       all_nodes<Law>([](auto call) { return call.finish_fits; }))
-  ILAW_KIT_CHECK(
+  ILAW_KIT_WHERE(
       serves_spins<Law>, "a law with_spins serves dimension 3, reads_v_previous, and has no history",
       reads<Law>(reads_v_previous) && !has_history<Law> && (Law::card.dimensions & ILAW_DIMENSION_3) != 0)
-  ILAW_KIT_CHECK(!names_asks<Law>,
+  ILAW_KIT_WHERE(!names_asks<Law>,
                  "step and ask take the same nodes: bool asks() const says which parameters need ask",
                  all_nodes<Law>([](auto call) { return !(call.steps && call.asks); }))
-  ILAW_KIT_CHECK(
+  ILAW_KIT_WHERE(
       names_stable_velocity_step<Law>,
       "stable_velocity_step must be V stable_velocity_step(V h_n, V h_t) const, or template <class Node> V "
       "stable_velocity_step(const Node& node) const",
@@ -327,6 +313,7 @@ constexpr bool passes_nodes() {
 #undef ILAW_KIT_MISSPELLED
 #undef ILAW_KIT_SPELLED
 #undef ILAW_KIT_CHECK
+#undef ILAW_KIT_WHERE
 #undef ILAW_KIT_FUNCTION
 
 // Whether a struct is a law; an error of one line where it is not.
