@@ -88,7 +88,7 @@ NODES = """| value | nodes |
 | --- | --- |
 | `"all"`, or the name of a set | bar `b` has the sets `b`, `b.left`, `b.right`; block `b` has `b` and its faces `b.x_min`, `b.x_max`, ... `b.z_max`; `sets` adds more |
 | `[0, 3]` | numbers, from 0; nodes of blocks are numbered along x first |
-| `{"near": [x, y, z]}` | the node nearest to a place, or to each place of a list |
+| `{"near": [x, y, z], "of": "b"}` | the node nearest to a place, or to each place of a list; of the set `of` alone, if it is given |
 | `{"box": [[low], [high]], "of": "b.z_min"}` | the nodes inside, bounds included; of the set `of` alone, if it is given |
 """
 

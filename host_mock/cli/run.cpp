@@ -148,7 +148,9 @@ class Run {
   }
 
   void resume() {
-    const Checkpoint checkpoint = read_checkpoint(scene_, integrator_, options_.folder);
+    const Checkpoint checkpoint = read_checkpoint(
+        scene_, integrator_, options_.folder,
+        [this](const Checkpoint& found) { history_.load(found.history_state, integrator_.steps()); });
     remove_files(std::string(written_at_once) + "\\.partial");  // those that a killed run was writing
     fields_.resume(checkpoint.fields);
     record.resumed_at = checkpoint_step_ = integrator_.steps();
@@ -169,7 +171,6 @@ class Run {
           file, options_.folder / ("history.until_step_" + std::to_string(integrator_.steps()) + ".csv"));
       history_.open(options_.folder);
     }
-    history_.load(checkpoint.history_state, integrator_.steps());
     for (const std::string& late : history_.late_sums()) scene_.warnings.push_back(late);
   }
 
@@ -177,7 +178,7 @@ class Run {
   void resume_events(const Checkpoint& checkpoint) {
     const bool had_events = checkpoint.events.size > 0;
     if (had_events && scene_.output.events)
-      events_.emplace(scene_, options_.folder, checkpoint.events).load(checkpoint.events_state);
+      events_.emplace(scene_, options_.folder, checkpoint.events, checkpoint.touching);
     else if (had_events)
       AtomicFile(options_.folder / "events.csv", checkpoint.events).commit();
     else if (scene_.output.events)
@@ -286,10 +287,11 @@ class Run {
   }
 
   void write_checkpoint_now() {
-    write_checkpoint(scene_, integrator_,
-                     {history_.flush(), fields_.written(), history_.state(),
-                      events_ ? events_->flush() : FileMark{}, events_ ? events_->state() : nlohmann::json()},
-                     options_.folder);
+    write_checkpoint(
+        scene_, integrator_,
+        {history_.flush(), fields_.written(), history_.state(), events_ ? events_->flush() : FileMark{},
+         events_ ? events_->touching() : Events::Touching{}},
+        options_.folder);
     checkpoint_step_ = integrator_.steps();
   }
 

@@ -31,6 +31,30 @@ std::string resealed(const std::string& bytes, const std::string& pointer, const
   return {sealed.begin(), sealed.end()};
 }
 
+// All is read before any file is renamed.
+TEST(Checkpoint, ThatCannotBeReadLeavesTheFolder) {
+  json scene = shipped("postit_test3");
+  scene["time"]["end"] = 0.3;
+  scene["output"] = {{"every", 5}, {"watch", {0}}, {"events", true}};
+  const auto folder = fresh_folder();
+  const std::string command =
+      "run " + written(scene, folder) + " --out " + folder.string() + " --checkpoint-every 100";
+  ASSERT_EQ(run_program(command).code, 0);
+  const std::string good = text_of(folder / "checkpoint.cbor");
+  const auto files_of = [&] {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::directory_iterator(folder))
+      files[entry.path().filename().string()] = text_of(entry.path());
+    return files;
+  };
+  for (const char* part : {"/history_state/late_sums", "/history_state", "/touching"}) {
+    std::ofstream(folder / "checkpoint.cbor", std::ios::binary) << resealed(good, part, 3);
+    const auto before = files_of();
+    EXPECT_THAT(run_program(command + " --resume"), Exits(2, HasSubstr("checkpoint.cbor"))) << part;
+    EXPECT_EQ(files_of(), before) << part;
+  }
+}
+
 // The file holds no bytes that lay in memory before: equal sums and counts give equal bytes.
 TEST(Checkpoint, OfEqualAccountsIsEqualBytes) {
   std::array<std::string, 2> written;
@@ -58,7 +82,7 @@ TEST(Checkpoint, OfAnotherLawOrStateVersionIsRefused) {
     std::ofstream(folder / "checkpoint.cbor", std::ios::binary)
         << resealed(good, "/identity/laws/0/" + key, value);
     try {
-      read_checkpoint(scene, integrator, folder);
+      read_checkpoint(scene, integrator, folder, [](const Checkpoint&) {});
     } catch (const std::runtime_error& error) {
       return error.what();
     }

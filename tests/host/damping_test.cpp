@@ -222,6 +222,15 @@ TEST(BulkViscosity, LetsABodyTurn) {
   EXPECT_LT(impulse.cwiseAbs().maxCoeff(), 1e-14);
 }
 
+// The audit evaluates the viscosity at the velocity before the start that the run reports.
+TEST(BulkViscosity, ReadsTheMotionFromTheStart) {
+  json source = shipped("stopper");
+  source["model"]["meshes"][0]["file"] = (fs::path(ILAW_SOURCE) / "host_mock/scenes/stopper.vtu").string();
+  source["loads"][0]["path"]["rows"][0][0] = 0.0;
+  source["time"]["end"] = 1e-4;
+  EXPECT_LT(ran(source).energy("balance_error"), 1e-13);
+}
+
 TEST(BulkViscosity, ClosesTheBalanceOfImpacts) {
   for (const char* name : {"bar_on_wall", "block_impact"}) {
     json source = shipped(name);

@@ -113,6 +113,30 @@ TEST(Warnings, TellOfAnOverlapWithASurface) {
   EXPECT_TRUE(scene_of(scene).warnings.empty());
 }
 
+// A node on an edge of the box has more area than the face that the nodes are on.
+TEST(Warnings, TellOfAreasOfEdges) {
+  json scene = json_of(scene_files::named("block_impact.json"));
+  json& interface = scene["interfaces"][0];
+  interface["law"] = "cohesive";
+  interface["parameters"] = {{"strength", 1.0}, {"toughness", 1.0}};
+  interface["nodes"] = {{"box", {{-1, -1, -1}, {1, 1, 0.021}}}};
+  EXPECT_THAT(scene_of(scene).warnings, Contains(StartsWith("/interfaces/0/nodes: node 0 lies on an edge")));
+  interface["nodes"]["of"] = scene["model"]["blocks"][0].value("name", "block0") + std::string(".z_min");
+  EXPECT_THAT(scene_of(scene).warnings, Not(Contains(HasSubstr("lies on an edge"))));
+}
+
+// Ten times the strength leaves a hundredth of the failure zone.
+TEST(Warnings, TellOfACoarseFailureZone) {
+  json scene = json_of(scene_files::named("dcb_peel.json"));
+  EXPECT_TRUE(scene_of(scene).warnings.empty());
+  json& strength = scene["interfaces"][0]["parameters"]["strength"];
+  strength = 10.0 * strength.get<double>();
+  const std::vector<std::string> warnings = scene_of(scene).warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0], StartsWith("/interfaces/0/parameters/strength: found"));
+  EXPECT_THAT(warnings[0], HasSubstr("three elements"));
+}
+
 TEST(Warnings, TellOfElementsThatLock) {
   json scene = json_of(scene_files::named("block_impact.json"));
   json& block = scene["model"]["blocks"][0];

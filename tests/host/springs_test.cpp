@@ -1,5 +1,6 @@
 // Springs and dampers between nodes, against closed forms of central difference and of two bodies.
 #include "host_runner.hpp"
+#include "scene_parts.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -68,6 +69,8 @@ TEST(Damper, DragsFromAnEndThatIsDriven) {
     auto [scene, integrator] = simulation_of(source);
     integrator.keep_load_impulse(1);
     double before = integrator.velocity()[1];
+    // The node has the velocity of its motion before the start, too.
+    EXPECT_NEAR(before, -0.1 + 0.5 * h * 0.5 / 3.0 * (0.2 + 0.1), 1e-15) << "h " << h;
     while (integrator.steps() < scene.steps) {
       integrator.step();
       Dofs reaction = Dofs::Zero(2);
@@ -111,6 +114,33 @@ TEST(Spring, TurnsWithItsEnds) {
     EXPECT_LT(error, 0.6 * h * h) << h;
   }
   EXPECT_NEAR(order(steps, errors), 2.0, 0.1);
+}
+
+json springs_between(const std::string& nodes, const std::string& partners, const std::vector<json>& blocks) {
+  json scene = scene_of_blocks(blocks, "[]");
+  scene["springs"] = {{{"name", "grip"}, {"nodes", nodes}, {"to", partners}, {"stiffness", 1}}};
+  scene["time"] = {{"cfl", 0.5}, {"end", 1}};
+  scene["output"] = {{"forces", {"grip"}}};
+  return scene;
+}
+
+// Faces have orders of their own.
+TEST(Spring, JoinsNodesOfFacesThatFaceEachOther) {
+  const std::vector<json> cube = {block("cube", {0, 0, 0}, {2, 2, 2}, {2, 3, 4}, elastic(1, 0.3, 1))};
+  for (const std::string axis : {"x", "y", "z"}) {
+    const Scene scene = scene_of(springs_between("cube." + axis + "_min", "cube." + axis + "_max", cube));
+    EXPECT_TRUE(scene.warnings.empty()) << axis;
+    for (const Spring& spring : scene.output.forces.at(0).springs)
+      EXPECT_NEAR(spring.length, 2.0, 1e-12) << axis;
+  }
+}
+
+TEST(Spring, WarnsWhenSetsDoNotFaceEachOther) {
+  const std::vector<json> blocks = {block("low", {0, 0, 0}, {1, 1, 1}, {2, 2, 1}, elastic(1, 0.3, 1)),
+                                    block("up", {0, 0, 2}, {2, 2, 1}, {2, 2, 1}, elastic(1, 0.3, 1))};
+  const Scene scene = scene_of(springs_between("low.z_max", "up.z_min", blocks));
+  ASSERT_EQ(scene.warnings.size(), 1U);
+  EXPECT_THAT(scene.warnings[0], StartsWith("/springs/0/to: these nodes do not face"));
 }
 
 // ---- the critical step ----------------------------------------------------------------------------------

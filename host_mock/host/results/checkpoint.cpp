@@ -22,7 +22,7 @@ json identity_of(const Scene& scene) {
                     {"version", interface->library().plugin().version},
                     {"state_size", interface->info().state_size},
                     {"state_version", interface->info().state_version}});
-  return {{"format", "ilaw checkpoint 9"},
+  return {{"format", "ilaw checkpoint 10"},
           {"program", ILAW_VERSION},
           {"scene", scene.source},
           {"laws", laws},
@@ -110,7 +110,7 @@ void write_checkpoint(const Scene& scene, const Integrator& integrator, const Ch
                         {"history", as_json(checkpoint.history)},
                         {"history_state", checkpoint.history_state},
                         {"events", as_json(checkpoint.events)},
-                        {"events_state", checkpoint.events_state},
+                        {"touching", checkpoint.touching},
                         {"fields", checkpoint.fields},
                         {"state", binary_of(state.str())}};
   Bytes packed = json::to_cbor(content);
@@ -121,7 +121,8 @@ void write_checkpoint(const Scene& scene, const Integrator& integrator, const Ch
   file.commit();
 }
 
-Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder) {
+Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
+                           const std::function<void(const Checkpoint&)>& take) {
   const std::filesystem::path path = folder / file_name;
   std::error_code ignored;
   if (!std::filesystem::exists(std::filesystem::symlink_status(path, ignored)))
@@ -136,12 +137,13 @@ Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std
   try {
     check_identity(content["identity"], identity_of(scene));
     checkpoint = {mark_of(content.at("history")), content.at("fields"), content.at("history_state"),
-                  mark_of(content.at("events")), content.at("events_state")};
+                  mark_of(content.at("events")), content.at("touching")};
     std::istringstream state(text_of(content.at("state")));
     integrator.load(state);
     if (integrator.steps() > scene.steps)
       throw std::runtime_error("is at time " + json(integrator.time()).dump() +
                                " already, expected an 'end' of 'time' that is not before it");
+    take(checkpoint);
   } catch (const std::exception& error) {
     throw std::runtime_error(path.string() + ": " + error.what());
   }

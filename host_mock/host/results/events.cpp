@@ -7,12 +7,13 @@
 namespace ilaw::host {
 
 Events::Events(const Scene& scene, const std::filesystem::path& folder,
-               const std::optional<FileMark>& written)
+               const std::optional<FileMark>& written, const Touching& touching)
     : scene_(scene),
       file_(folder / "events.csv", written),
       table_(file_.stream()),
-      touching_(scene.interfaces.size()),
-      still_touching_(touching_) {
+      touching_(touching),
+      still_touching_(scene.interfaces.size()) {
+  touching_.resize(scene.interfaces.size());
   if (written) return;
   for (const char* column : {"time", "node", "interface", "event"}) table_ << column;
   for (int c = 0; c < scene.model->dimension(); ++c) table_ << "r" + std::to_string(c);

@@ -16,9 +16,12 @@ namespace ilaw::host {
 
 class Events {
  public:
-  // written: by an earlier run, which this one continues.
-  Events(const Scene& scene, const std::filesystem::path& folder,
-         const std::optional<FileMark>& written = {});
+  // By node_index, per interface: those whose status was not free after the last step.
+  using Touching = std::vector<std::vector<int>>;
+
+  // written: by an earlier run, which this one continues, and the nodes that touched at its end.
+  Events(const Scene& scene, const std::filesystem::path& folder, const std::optional<FileMark>& written = {},
+         const Touching& touching = {});
 
   // After every step.
   void add_step(const Integrator& integrator);
@@ -28,8 +31,7 @@ class Events {
   void keep_rows() { file_.keep_lines(); }
 
   // Which nodes touch, for the checkpoint.
-  nlohmann::json state() const { return touching_; }
-  void load(const nlohmann::json& state) { state.get_to(touching_); }
+  const Touching& touching() const { return touching_; }
 
  private:
   void add_interface(std::size_t number, const Integrator& integrator);
@@ -38,8 +40,7 @@ class Events {
   const Scene& scene_;
   AtomicFile file_;
   CsvWriter table_;
-  // By node_index, per interface: those whose status was not free after the last step.
-  std::vector<std::vector<int>> touching_, still_touching_;
+  Touching touching_, still_touching_;
 };
 
 }  // namespace ilaw::host

@@ -4,13 +4,10 @@
 #include "contact/counterpart.hpp"
 #include "contact/mesh_surface.hpp"
 #include "contact/mortar_surface.hpp"
-#include "model/elements.hpp"
 #include "scene/json_text.hpp"
 #include "scene/values.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -86,52 +83,15 @@ std::unique_ptr<const Obstacle> read_obstacle(const json& obstacle, int d, const
                                  obstacle["radius"].get<double>(), motion, turning);
 }
 
-// Two sets have orders of their own: partners are the nodes that face each other. As they came where some
-// node faces none, or a partner none.
-std::vector<int> facing(const std::vector<int>& nodes, const std::vector<int>& partners, const Vector& normal,
-                        const Model& model) {
-  const double near = 0.5 * shortest_edge(model);
-  if (!std::isfinite(near)) return partners;  // points
-  const auto across = [&](int node) {
-    const Vector x = model.position(node);
-    return Vector(x - x.dot(normal) * normal);
-  };
-  const Vector axis = normal.unitOrthogonal();
-  const auto along = [&](int node) { return across(node).dot(axis); };
-  std::multimap<double, int> sorted;
-  for (const int partner : partners) sorted.emplace(along(partner), partner);
-  std::vector<int> found;
-  for (const int node : nodes) {
-    const Vector x = across(node);
-    double least = near;
-    auto nearest = sorted.end();
-    for (auto at = sorted.lower_bound(along(node) - near);
-         at != sorted.end() && at->first <= along(node) + near; ++at)
-      if (const double aside = (across(at->second) - x).norm(); aside < least) least = aside, nearest = at;
-    if (nearest == sorted.end()) return partners;
-    found.push_back(nearest->second);
-    sorted.erase(nearest);
-  }
-  return found;
-}
-
 std::unique_ptr<Counterpart> read_partners(const json& against, const NodeSet& own, const Model& model,
                                            const std::string& pointer) {
   if (!against.contains("nodes") || !against.contains("normal"))
     throw mistake(pointer, against.dump(), "'nodes' and 'normal', or 'surface'");
-  NodeSet partners = select_nodes(against["nodes"], model, pointer + "/nodes");
-  if (partners.nodes.size() != own.nodes.size())
-    throw mistake(pointer + "/nodes", std::to_string(partners.nodes.size()) + " nodes",
-                  "one for each of the " + std::to_string(own.nodes.size()) + " nodes of the interface");
   const Vector normal =
       read_direction(against["normal"], model.dimension(), pointer + "/normal").normalized();
-  if (!against["nodes"].is_array() && model.dimension() > 1)
-    partners.nodes = facing(own.nodes, partners.nodes, normal, model);
-  for (std::size_t k = 0; k < own.nodes.size(); ++k)
-    if (own.nodes[k] == partners.nodes[k])
-      throw SceneError(pointer + "/nodes",
-                       "node " + std::to_string(own.nodes[k]) + " would meet itself, expected another node");
-  return std::make_unique<NodeCounterpart>(model, own.nodes, partners.nodes, normal);
+  const std::vector<int> partners =
+      select_partners(against["nodes"], own.nodes, model, normal, pointer + "/nodes").nodes;
+  return std::make_unique<NodeCounterpart>(model, own.nodes, partners, normal);
 }
 
 std::unique_ptr<Counterpart> read_surface(const json& against, const NodeSet& own, const Model& model,

@@ -66,8 +66,9 @@ class Named {
   }
 
   void add_springs(const json& springs, const std::string& pointer) {
+    std::vector<std::string> given_before;
     add_once(springs["name"].get<std::string>(), pointer).springs =
-        read_springs(json::array({springs}), *scene_.model);
+        read_springs(json::array({springs}), *scene_.model, given_before);
   }
 
   // The reaction of what holds or moves nodes of a set.

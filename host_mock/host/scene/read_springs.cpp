@@ -15,17 +15,14 @@ using nlohmann::json;
 
 // As many other ends as there are nodes, or a fixed point for all.
 std::vector<int> read_other_ends(const json& spring, const std::vector<int>& nodes, const Model& model,
-                                 const std::string& pointer) {
+                                 const std::string& pointer, std::vector<std::string>& warnings) {
   if (spring.contains("anchor")) return std::vector<int>(nodes.size(), -1);
-  const std::string where = pointer + "/to";
-  std::vector<int> partners = select_nodes(spring["to"], model, where).nodes;
-  if (partners.size() != nodes.size())
-    throw mistake(where, std::to_string(partners.size()) + " nodes",
-                  "one for each of the " + std::to_string(nodes.size()) + " nodes of 'nodes'");
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    if (nodes[k] == partners[k])
-      throw mistake(where, "node " + std::to_string(nodes[k]) + " at both ends", "another node");
-  return partners;
+  const ChosenPartners partners = select_partners(spring["to"], nodes, model, {}, pointer + "/to");
+  if (!partners.are_facing)
+    warnings.push_back(pointer +
+                       "/to: these nodes do not face those of 'nodes' one by one, so they are "
+                       "paired in the order of both sets; list them to choose the pairs");
+  return partners.nodes;
 }
 
 // Without load, where the scene does not say: the distance of the ends before any displacement.
@@ -37,7 +34,8 @@ double read_length(const json& spring, const Spring& ends, const Model& model) {
 
 }  // namespace
 
-std::vector<Spring> read_springs(const json& springs, const Model& model) {
+std::vector<Spring> read_springs(const json& springs, const Model& model,
+                                 std::vector<std::string>& warnings) {
   std::vector<Spring> found;
   for (std::size_t i = 0; i < springs.size(); ++i) {
     const json& spring = springs[i];
@@ -47,7 +45,7 @@ std::vector<Spring> read_springs(const json& springs, const Model& model) {
     if (stiffness == 0.0 && damping == 0.0)
       throw mistake(pointer, spring.dump(), "'stiffness', 'damping' or both above 0");
     const std::vector<int> nodes = select_nodes(spring["nodes"], model, pointer + "/nodes").nodes;
-    const std::vector<int> partners = read_other_ends(spring, nodes, model, pointer);
+    const std::vector<int> partners = read_other_ends(spring, nodes, model, pointer, warnings);
     const Vector anchor = read_vector_or_zero(spring, "anchor", model.dimension(), pointer);
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       Spring made{nodes[k], partners[k], anchor, stiffness, damping, 0.0};

@@ -35,8 +35,9 @@ std::unique_ptr<Model> read_model(const nlohmann::json& model, const std::filesy
 void read_sets(const nlohmann::json& sets, Model& model);
 // "/initial": displacements of nodes at time 0, on top of those that the bodies have.
 void read_initial(const nlohmann::json& initial, Model& model);
-// "/springs": springs and dampers, one between each pair of nodes.
-std::vector<Spring> read_springs(const nlohmann::json& springs, const Model& model);
+// "/springs": springs and dampers, one between each pair of nodes. Adds warnings.
+std::vector<Spring> read_springs(const nlohmann::json& springs, const Model& model,
+                                 std::vector<std::string>& warnings);
 // "/time": the step and the number of steps, into a scene whose model was read.
 void read_time(const nlohmann::json& time, Scene& scene);
 // A load: what acts on the bodies from outside.

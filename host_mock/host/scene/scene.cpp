@@ -94,7 +94,7 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   read_sets(scene.source.value("sets", json::object()), *scene.model);
   if (scene.source.contains("initial")) read_initial(scene.source["initial"], *scene.model);
   const std::vector<Spring> springs =
-      read_springs(scene.source.value("springs", json::array()), *scene.model);
+      read_springs(scene.source.value("springs", json::array()), *scene.model, scene.warnings);
   if (!springs.empty()) scene.model = std::make_unique<Sprung>(std::move(scene.model), springs);
   scene.model->heat(read_thermal(scene.source["model"], *scene.model));
   if (scene.source.contains("prestress")) scene.prestress = read_prestress(scene.source["prestress"]);

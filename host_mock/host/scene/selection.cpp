@@ -2,12 +2,16 @@
 #include "scene/values.hpp"
 
 #include "base/words.hpp"
+#include "model/elements.hpp"
 #include "scene/json_text.hpp"
 #include "scene/readers.hpp"
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <iterator>
+#include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -75,18 +79,43 @@ NodeSet listed(const json& numbers, const Model& model, const std::string& point
   return part_of(model.sets().at("all"), nodes.indices());
 }
 
-int nearest(const Vector& x, const Model& model) {
-  int best = 0;
-  for (int node = 1; node < model.node_count(); ++node)
-    if ((model.position(node) - x).squaredNorm() < (model.position(best) - x).squaredNorm()) best = node;
+// The sets that name a body and have the node.
+std::string bodies_of(int node, const Model& model) {
+  std::vector<std::string> names;
+  for (const auto& [name, set] : model.sets())
+    if (name != "all" && name.find('.') == std::string::npos &&
+        std::find(set.nodes.begin(), set.nodes.end(), node) != set.nodes.end())
+      names.push_back("'" + name + "'");
+  return "node " + std::to_string(node) + (names.empty() ? "" : " of " + joined(names));
+}
+
+// Nodes of two bodies at one place are refused: which of them comes first says nothing.
+std::size_t nearest(const Vector& x, const NodeSet& set, const Model& model, const std::string& pointer) {
+  const auto distance = [&](const Vector& from, std::size_t k) {
+    return (model.position(set.nodes[k]) - from).norm();
+  };
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < set.nodes.size(); ++k)
+    if (distance(x, k) < distance(x, best)) best = k;
+  const Vector place = model.position(set.nodes[best]);
+  const double edge = shortest_edge(model), same = std::isfinite(edge) ? 1e-6 * edge : 1e-12 * place.norm();
+  for (std::size_t k = 0; k < set.nodes.size(); ++k)
+    if (k != best && distance(place, k) <= same)
+      throw mistake(
+          pointer,
+          bodies_of(set.nodes[best], model) + " and " + bodies_of(set.nodes[k], model) + " at one place",
+          "one node there: name its body or face with 'of'");
   return best;
 }
 
 // One place, or a list of them.
-NodeSet nearest_of(const json& places, const Model& model, const std::string& pointer) {
+NodeSet nearest_of(const json& selection, const Model& model, const std::string& selection_pointer) {
+  const NodeSet& set = find_set(selection.value("of", "all"), model, false, selection_pointer + "/of");
+  const json& places = selection["near"];
+  const std::string pointer = selection_pointer + "/near";
   Distinct nodes;
   const auto add = [&](const json& place, const std::string& where) {
-    nodes.add(nearest(read_vector(place, model.dimension(), where), model), where);
+    nodes.add(set.nodes[nearest(read_vector(place, model.dimension(), where), set, model, where)], where);
   };
   const auto numbers =
       std::count_if(places.begin(), places.end(), [](const json& one) { return one.is_number(); });
@@ -112,6 +141,47 @@ NodeSet inside(const json& selection, const Model& model, const std::string& poi
   return part_of(set, indices);
 }
 
+// ---- partners ----
+
+// A unit vector, or 0 where both centers are one.
+Vector between_centers(const std::vector<int>& nodes, const std::vector<int>& partners, const Model& model) {
+  Vector sum = Vector::Zero(model.dimension());
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    sum += model.position(partners[k]) - model.position(nodes[k]);
+  const double distance = sum.norm() / static_cast<double>(nodes.size());
+  return distance > 1e-6 * shortest_edge(model) ? Vector(sum.normalized())
+                                                : Vector(Vector::Zero(model.dimension()));
+}
+
+// For each node the partner that it faces along a direction; none where some node faces no partner of its
+// own.
+std::vector<int> facing(const std::vector<int>& nodes, const std::vector<int>& partners,
+                        const Vector& direction, const Model& model) {
+  const double near = 0.5 * shortest_edge(model);
+  const auto across = [&](int node) {
+    const Vector x = model.position(node);
+    return Vector(x - x.dot(direction) * direction);
+  };
+  const Vector axis =
+      direction.isZero() ? Vector(Vector::Unit(model.dimension(), 0)) : Vector(direction.unitOrthogonal());
+  const auto along = [&](int node) { return across(node).dot(axis); };
+  std::multimap<double, int> sorted;
+  for (const int partner : partners) sorted.emplace(along(partner), partner);
+  std::vector<int> found;
+  for (const int node : nodes) {
+    const Vector x = across(node);
+    double least = near;
+    auto nearest = sorted.end();
+    for (auto at = sorted.lower_bound(along(node) - near);
+         at != sorted.end() && at->first <= along(node) + near; ++at)
+      if (const double aside = (across(at->second) - x).norm(); aside < least) least = aside, nearest = at;
+    if (nearest == sorted.end()) return {};
+    found.push_back(nearest->second);
+    sorted.erase(nearest);
+  }
+  return found;
+}
+
 // ---- names for nodes ----
 
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
@@ -131,8 +201,27 @@ NodeSet select_nodes(const json& nodes, const Model& model, const std::string& p
   if (nodes.is_number())
     return part_of(model.sets().at("all"), {static_cast<std::size_t>(node_of(nodes, model, pointer))});
   if (nodes.is_array()) return listed(nodes, model, pointer);
-  if (nodes.contains("near")) return nearest_of(nodes["near"], model, pointer + "/near");
+  if (nodes.contains("near")) return nearest_of(nodes, model, pointer);
   return inside(nodes, model, pointer);
+}
+
+ChosenPartners select_partners(const json& partners, const std::vector<int>& nodes, const Model& model,
+                               std::optional<Vector> direction, const std::string& pointer) {
+  ChosenPartners found{select_nodes(partners, model, pointer).nodes, true};
+  if (found.nodes.size() != nodes.size())
+    throw mistake(pointer, std::to_string(found.nodes.size()) + " nodes",
+                  "one for each of the " + std::to_string(nodes.size()) + " nodes of 'nodes'");
+  const bool is_ordered = partners.is_array() || partners.contains("near");
+  if (!is_ordered && model.dimension() > 1 && std::isfinite(shortest_edge(model))) {
+    const Vector along = direction ? *direction : between_centers(nodes, found.nodes, model);
+    const std::vector<int> opposite = facing(nodes, found.nodes, along, model);
+    found.are_facing = !opposite.empty();
+    if (found.are_facing) found.nodes = opposite;
+  }
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    if (nodes[k] == found.nodes[k])
+      throw mistake(pointer, "node " + std::to_string(nodes[k]) + " at both ends", "another node");
+  return found;
 }
 
 const NodeSet& select_surface(const std::string& name, const Model& model, const std::string& pointer) {

@@ -12,6 +12,7 @@
 #include <valijson/validator.hpp>
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -96,13 +97,31 @@ std::string allowed(const json& part) {
 
 using Mistakes = std::vector<std::string>;
 
+// The one place of a key in a scene, of some type of a part or of any.
+std::string place_of(const std::string& key) {
+  std::set<std::string> places;
+  const auto add = [&](const json& part, const std::string& pointer) {
+    if (part.value("properties", json::object()).contains(key)) places.insert(pointer + key);
+  };
+  add(schema(), "/");
+  for (const auto& [name, given] : schema()["properties"].items()) {
+    const json& part = resolved(given);
+    part.contains("items") ? add(resolved(part["items"]), "/" + name + "/.../") : add(part, "/" + name + "/");
+  }
+  for (const auto& [kind, pointer] : {std::pair{"model_", "/model/"}, std::pair{"load_", "/loads/.../"},
+                                      std::pair{"obstacle_", "/interfaces/.../obstacle/"}})
+    for (const auto& [name, part] : schema()["definitions"].items())
+      if (name.starts_with(kind)) add(part, pointer);
+  return places.size() == 1 ? "; '" + key + "' is a key of another place, " + *places.begin() : "";
+}
+
 void explain_keys(const json& value, const json& part, const std::string& pointer, Mistakes& mistakes) {
   std::vector<std::string> keys;
   for (const auto& [key, ignored] : part["properties"].items()) keys.push_back(key);
   for (const auto& [key, ignored] : value.items())
     if (!part["properties"].contains(key))
       mistakes.emplace_back(SceneError(pointer + "/" + key, "unknown key, expected one of: " + joined(keys) +
-                                                                suggestion(key, keys))
+                                                                suggestion(key, keys) + place_of(key))
                                 .what());
 }
 

@@ -9,7 +9,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace ilaw::host {
 
@@ -34,6 +36,17 @@ Motion read_motion(const nlohmann::json& object, int dimension, const std::strin
 // "all" or the name of a set; [0, 3]; {"near": [x, y, z]}, the nearest node, or those nearest to a
 // list of places; {"box": [[...], [...]], "of": set}, those inside. Throws SceneError at the pointer.
 NodeSet select_nodes(const nlohmann::json& nodes, const Model& model, const std::string& pointer);
+
+struct ChosenPartners {
+  std::vector<int> nodes;
+  bool are_facing;  // false: sets that do not face each other node by node, in their own orders
+};
+// A partner for each node. A list or places keep their order; a set or box has none, so its nodes are paired
+// with those that they face along a direction, by default from the center of the nodes to that of the
+// partners.
+ChosenPartners select_partners(const nlohmann::json& partners, const std::vector<int>& nodes,
+                               const Model& model, std::optional<Vector> direction,
+                               const std::string& pointer);
 
 // As above, for a set that must have facets.
 const NodeSet& select_surface(const std::string& name, const Model& model, const std::string& pointer);

@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace ilaw::host {
@@ -82,7 +83,7 @@ StartGaps gaps_at_start(const Scene& scene, const Interface& interface, double l
 
 // Most laws throw such nodes out. The nearest point of a mesh surface comes from an iteration, so its gaps
 // are rounded more.
-std::string overlap(const Scene& scene, const Interface& interface) {
+std::string overlap(const Scene& scene, const Interface& interface, const json&) {
   const double rounding = 1e-12 * scene.model->position().cwiseAbs().maxCoeff(),
                limit = counterpart_of(interface).shares_partners()
                            ? std::max(rounding, 1e-6 * shortest_edge(*scene.model))
@@ -110,7 +111,7 @@ double depth_behind(const FlatSurface& flat, const Model& model) {
 
 // A plane keeps bodies on the side that its normal points to. Where its own nodes lie on it, the rest of the
 // model tells.
-std::string wrong_side(const Scene& scene, const Interface& interface) {
+std::string wrong_side(const Scene& scene, const Interface& interface, const json&) {
   const std::optional<FlatSurface> flat = counterpart_of(interface).flat_at(scene.start_time());
   const double depth = flat ? depth_behind(*flat, *scene.model) : 0.0;
   if (!(depth > 0.0) || gaps_at_start(scene, interface, -1e-9 * depth, HUGE_VAL).below > 0) return "";
@@ -122,7 +123,7 @@ bool has_pairs(const Interface& interface) {
   return !counterpart_of(interface).partners().empty() && !counterpart_of(interface).shares_partners();
 }
 
-std::string partner_twice(const Scene&, const Interface& interface) {
+std::string partner_twice(const Scene&, const Interface& interface, const json&) {
   if (!has_pairs(interface)) return "";
   std::set<int> seen(interface.nodes().begin(), interface.nodes().end());
   for (const int partner : counterpart_of(interface).partners())
@@ -134,7 +135,7 @@ std::string partner_twice(const Scene&, const Interface& interface) {
 }
 
 // The n-th node meets the n-th partner: lists in different orders pair what is far from each other.
-std::string partner_aside(const Scene& scene, const Interface& interface) {
+std::string partner_aside(const Scene& scene, const Interface& interface, const json&) {
   constexpr double most_edges = 0.5;
   const Model& model = *scene.model;
   if (!has_pairs(interface) || model.dimension() == 1) return "";
@@ -154,7 +155,7 @@ std::string partner_aside(const Scene& scene, const Interface& interface) {
 }
 
 // A bond is made where the bodies are: across a gap it pulls from afar.
-std::string open_bond(const Scene& scene, const Interface& interface) {
+std::string open_bond(const Scene& scene, const Interface& interface, const json&) {
   constexpr double most_of_edge = 0.1;
   const double edge = shortest_edge(*scene.model);
   const ilaw_instance_info& info = interface.info();
@@ -177,7 +178,7 @@ bool has_memory_in_seconds(const ilaw_law& law) {
 }
 
 // A window that holds hardly more than the impulse of one step.
-std::string short_memory(const Scene& scene, const Interface& interface) {
+std::string short_memory(const Scene& scene, const Interface& interface, const json&) {
   constexpr double least_steps = 2.0;
   const auto& numbers = interface.setup().arguments.numbers;
   const auto memory = numbers.find("memory");
@@ -189,20 +190,53 @@ std::string short_memory(const Scene& scene, const Interface& interface) {
          "steps help";
 }
 
-std::string unread_temperature(const Scene& scene, const Interface& interface) {
+std::string unread_temperature(const Scene&, const Interface& interface, const json& source) {
   const InterfaceSetup& setup = interface.setup();
   if (!setup.heat || !setup.heat->obstacle_temperature) return "";
   if (interface.heat()->reads("counterpart_temperature")) return "";
-  const auto is_own = [&](const auto& one) { return one.get() == &interface; };
-  const auto number = std::find_if(scene.interfaces.begin(), scene.interfaces.end(), is_own);
-  const auto i = static_cast<std::size_t>(number - scene.interfaces.begin());
-  return "found " + scene.source["interfaces"][i]["obstacle"]["temperature"].dump() + ", which law '" +
-         setup.law + "' does not read: nothing is conducted";
+  return "found " + source["obstacle"]["temperature"].dump() + ", which law '" + setup.law +
+         "' does not read: nothing is conducted";
+}
+
+// A box of all nodes gives a node on an edge the area of all its faces, which no face alone has.
+std::string area_of_edges(const Scene& scene, const Interface& interface, const json& source) {
+  const json& nodes = source["nodes"];
+  if (!nodes.is_object() || !nodes.contains("box") || nodes.contains("of")) return "";
+  if (!(interface.info().inputs & ILAW_INPUT_AREA)) return "";
+  std::set<std::pair<int, double>> of_faces;
+  for (const auto& [name, set] : scene.model->sets())
+    for (std::size_t k = 0; k < set.nodes.size() && !set.facets.empty(); ++k)
+      of_faces.emplace(set.nodes[k], interface.setup().area_factor * set.areas[k]);
+  if (of_faces.empty()) return "";
+  for (std::size_t k = 0; k < interface.nodes().size(); ++k)
+    if (const std::pair own{interface.nodes()[k], interface.setup().areas[k]}; !of_faces.contains(own))
+      return node(own.first) + " lies on an edge and has the area of all faces there, " + number(own.second) +
+             ": name one face with \"of\"";
+  return "";
+}
+
+// Turon, Davila, Camanho, Costa, Engineering Fracture Mechanics 74 (2007): the failure zone of length
+// E G/strength^2 needs three elements. Silent where bodies have different moduli.
+std::string coarse_zone(const Scene& scene, const Interface& interface, const json&) {
+  constexpr double least_elements = 3.0;
+  const auto& numbers = interface.setup().arguments.numbers;
+  const auto strength = numbers.find("strength"), toughness = numbers.find("toughness");
+  std::set<double> moduli;
+  for (const char* kind : {"blocks", "meshes"})
+    for (const json& body : scene.source["model"].value(kind, json::array()))
+      moduli.insert(body["material"]["young"].get<double>());
+  if (moduli.size() != 1 || strength == numbers.end() || toughness == numbers.end()) return "";
+  const double zone = *moduli.begin() * toughness->second / (strength->second * strength->second),
+               edge = shortest_edge(*scene.model);
+  if (!(least_elements * edge > zone)) return "";
+  return "found " + number(strength->second) + ", at which the failure zone is " + number(zone) +
+         " long, and the shortest edge of an element is " + number(edge) +
+         ": fracture follows the mesh unless the zone has three elements";
 }
 
 struct InterfaceWarning {
   const char* key;  // below the interface
-  std::string (*text)(const Scene&, const Interface&);
+  std::string (*text)(const Scene&, const Interface&, const json& source);
 };
 constexpr InterfaceWarning interface_warnings[] = {{"", overlap},
                                                    {"/obstacle/normal", wrong_side},
@@ -210,7 +244,9 @@ constexpr InterfaceWarning interface_warnings[] = {{"", overlap},
                                                    {"/against/nodes", partner_aside},
                                                    {"", open_bond},
                                                    {"/parameters/memory", short_memory},
-                                                   {"/obstacle/temperature", unread_temperature}};
+                                                   {"/obstacle/temperature", unread_temperature},
+                                                   {"/nodes", area_of_edges},
+                                                   {"/parameters/strength", coarse_zone}};
 
 // ---- bodies ---------------------------------------------------------------------------------------------
 
@@ -241,7 +277,8 @@ void add_warnings(Scene& scene) {
   warn_of_times(scene);
   for (const InterfaceWarning& warning : interface_warnings)
     for (std::size_t i = 0; i < scene.interfaces.size(); ++i)
-      if (const std::string text = warning.text(scene, *scene.interfaces[i]); !text.empty())
+      if (const std::string text = warning.text(scene, *scene.interfaces[i], scene.source["interfaces"][i]);
+          !text.empty())
         scene.warnings.push_back(at("/interfaces", i) + warning.key + ": " + text);
   warn_of_locking(scene);
 }

@@ -73,20 +73,18 @@ Dofs Integrator::force_at_start() const {
 
 // Half a kick takes V_0 to V_{1/2}, without interfaces.
 void Integrator::add_start_kick() {
+  hold_driven_before();  // dampers read that velocity
   Dofs force = force_at_start();
   model_.add_internal_forces(u_, force);
-  v_ = v_before_ + 0.5 * dt_ * force.cwiseProduct(inverse_mass_);
+  v_ = model_.initial_velocity() + 0.5 * dt_ * force.cwiseProduct(inverse_mass_);
   if (!correcting_.empty()) correct(start_times());
 }
 
 // Driven nodes have no velocity before the start but the one that drives them: the start is no impact.
 void Integrator::hold_driven_before() {
+  Dofs ignored = Dofs::Zero(u_.size());
   for (const auto& load : loads_)
-    for (const int node : load->prescribed_nodes())
-      for (const int axis : load->prescribed_axes()) {
-        const Eigen::Index dof = Eigen::Index{node} * model_.dimension() + axis;
-        v_before_[dof] = v_[dof];
-      }
+    if (!load->prescribed_nodes().empty()) load->correct(start_times(), {u_, v_before_}, v_before_, ignored);
 }
 
 // m (V_{1/2} - V_0) = h/2 f_0 + r_0: laws are asked at time 0, with half a step of the velocity. Bodies then
@@ -107,7 +105,6 @@ void Integrator::start() {
   }
   const Eigen::Index d = model_.dimension();
   const Dofs v_free = v_;
-  hold_driven_before();
   find_contact_mass(start_times());
   try {
     add_reactions({u_, v_before_, begin_, dt_, largest_speed(v_before_, d), speed_before_, 0});

@@ -74,7 +74,8 @@ def joint(name, stone):
 def scene():
     ground = {"name": "ground", "law": "coulomb", "parameters": {"friction": FRICTION}, "nodes": "all",
               "obstacle": {"type": "plane", "point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0]}}
-    crowns = [{"near": [center, 0.0, 1.0]} for _, center in ARCHES.values()]
+    crowns = [{"near": [center, 0.0, 1.0], "of": f"stones.{name}_{STONES // 2 - 1}_last"}
+              for name, (_, center) in ARCHES.items()]
     return {
         "title": "Two arches of stones without mortar: thick enough, it stands; too thin, it falls",
         "doc": "Made by arch.py. A semicircular arch needs 0.1075 of its mean radius (Milankovitch 1907): these have "
