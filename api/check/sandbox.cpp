@@ -71,6 +71,12 @@ void append(std::array<char, N>& room, const char* text) {
   room[at] = '\0';
 }
 
+// The library may have written over the zero at its end.
+template <std::size_t N>
+std::string text_in(const std::array<char, N>& room) {
+  return {room.begin(), std::find(room.begin(), room.end(), '\0')};
+}
+
 bool was_write(const void* context) {
 #if defined(__x86_64__)
   return (static_cast<const ucontext_t*>(context)->uc_mcontext.gregs[REG_ERR] & 2) != 0;
@@ -258,9 +264,10 @@ Ending ending_of(const Shared& left, Waiting waiting, int status, double seconds
   ending.returned = in_time && left.returned;
   ending.result.assign(left.result.data(), std::min(left.size, most_result));
   if (!ending.returned)
-    ending.how = in_time && left.what[0] != '\0' ? left.what.data() : how_it_ended(in_time, status, seconds);
-  ending.call = left.call.data();
-  ending.setting = left.setting.data();
+    ending.how =
+        in_time && left.what[0] != '\0' ? text_in(left.what) : how_it_ended(in_time, status, seconds);
+  ending.call = text_in(left.call);
+  ending.setting = text_in(left.setting);
   return ending;
 }
 
