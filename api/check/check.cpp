@@ -314,7 +314,7 @@ std::string refusal_of(const std::string& file, const std::string& name, const V
   const ilaw_law& law = *library.law(name);
   Refusal refusal{};
   for (const Setup& setup : setups_of(law))
-    if (create(law, SetupStruct(setup, values).given, refusal)) return "";
+    if (create(law, setup, values, refusal)) return "";
   return refusal.message.empty() ? "code " + std::to_string(refusal.code) : refusal.message;
 }
 

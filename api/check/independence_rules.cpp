@@ -15,7 +15,7 @@ struct NamedLayout {
 
 bool any(const Trial&) { return true; }
 
-// The script in each layout gives the bits of the plain one.
+// The script in each layout gives the bits of the plain one, in the outputs that it asks for.
 Judge in_layouts(const std::vector<NamedLayout>& layouts, bool (*applies)(const Trial& trial) = any,
                  const char* otherwise = "the law accepted no parameters", const Layout& plain = {}) {
   return on_trials_per_node_too(
@@ -24,7 +24,7 @@ Judge in_layouts(const std::vector<NamedLayout>& layouts, bool (*applies)(const 
         const Script script = draw_script(trial, draw);
         const std::vector<Results> expected = run(trial, script, plain);
         for (const auto& [how, layout] : layouts)
-          expect_same(trial, script, expected, run(trial, script, layout), how);
+          expect_same(trial, script, expected, run(trial, script, layout), how, layout.outputs);
         return true;
       },
       otherwise);
@@ -63,20 +63,6 @@ bool large_batch(const Trial& trial, Draw& draw) {
   const std::vector<Results> all = run(trial, script);
   for (const std::size_t i : {std::size_t{0}, std::size_t{65}, std::size_t{150}, std::size_t{299}})
     expect_part(trial, script, all, {i}, "alone");
-  return true;
-}
-
-bool outputs(const Trial& trial, Draw& draw) {
-  const Script script = draw_script(trial, draw);
-  const std::vector<Results> all = run(trial, script);
-  for (const std::uint32_t asked :
-       {0U, std::uint32_t{ILAW_OUTPUT_VELOCITY}, std::uint32_t{ILAW_OUTPUT_STATUS},
-        std::uint32_t{ILAW_OUTPUT_ENERGY}, all_outputs & ~amounts_output})
-    expect_same(trial, script, all, run(trial, script, {.outputs = asked}),
-                asked == 0 ? "without optional outputs" : "with fewer optional outputs", asked);
-  if (trial.setup.spins())
-    expect_same(trial, script, all, run(trial, script, {.outputs = spin_output}),
-                "with spins as the only optional output", spin_output);
   return true;
 }
 
@@ -179,7 +165,12 @@ std::vector<Rule> independence_rules() {
       {"batch-large", "A node gets the same bits among hundreds as alone.", alone,
        on_trials_per_node_too(large_batch)},
       {"outputs-asked", "Which outputs are asked for changes no bit of the others.", alone,
-       on_trials_per_node_too(outputs)},
+       in_layouts({{"without optional outputs", {.outputs = 0}},
+                   {"with the velocity alone", {.outputs = ILAW_OUTPUT_VELOCITY}},
+                   {"with the status alone", {.outputs = ILAW_OUTPUT_STATUS}},
+                   {"with the energy alone", {.outputs = ILAW_OUTPUT_ENERGY}},
+                   {"with the spin alone", {.outputs = spin_output}},
+                   {"without amounts", {.outputs = all_outputs & ~amounts_output}}})},
       {"amounts-asked", "Which amounts are asked for changes no bit of the other results.",
        "ilaw.h, ilaw_batch.amounts", on_trials_per_node_too(amounts, "the law has no amounts")},
       {"floats-rounded", "A float result is the double result rounded once; status and state are the same.",

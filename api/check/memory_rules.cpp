@@ -11,7 +11,7 @@ namespace {
 using Flush = GuardedPages::Flush;
 
 // A fault ends the process, and is the finding of the rule.
-Judge between_guards(const GuardedPages::Guarded& guarded, std::uint32_t outputs) {
+Judge between_guards(Use guarded, std::uint32_t outputs) {
   return on_trials_per_node_too([=](const Trial& trial, Draw& draw) {
     const Script script = draw_script(trial, draw, {13, 2});
     for (const Flush flush : {Flush::with_the_end, Flush::with_the_beginning})
@@ -88,14 +88,11 @@ bool initialise_reads(const Trial& trial, Draw& draw) {
 
 std::vector<Rule> memory_rules() {
   return {{"memory-reads", "No input is read outside the nodes of the batch, and none is written.",
-           "ilaw.h, ilaw_batch",
-           between_guards({.inputs = true, .outputs = false, .unneeded = false}, all_outputs)},
+           "ilaw.h, ilaw_batch", between_guards(Use::input, all_outputs)},
           {"memory-writes", "No output is written, or read, outside the nodes of the batch.",
-           "ilaw.h, ilaw_batch",
-           between_guards({.inputs = false, .outputs = true, .unneeded = false}, all_outputs)},
+           "ilaw.h, ilaw_batch", between_guards(Use::output, all_outputs)},
           {"memory-unneeded", "An array that the instance does not ask for is not read.",
-           "ilaw.h, ilaw_instance_info.inputs",
-           between_guards({.inputs = false, .outputs = false, .unneeded = true}, ILAW_OUTPUT_VELOCITY)},
+           "ilaw.h, ilaw_instance_info.inputs", between_guards(Use::unneeded, ILAW_OUTPUT_VELOCITY)},
           {"memory-beside", "Nothing is written between strides, nor at nodes that are on no list.",
            "ilaw.h, ilaw_batch.index", on_trials_per_node_too(beside)},
           {"outputs-written", "Every output that is asked for is written at every node.", "abi.md, Outputs",

@@ -14,11 +14,9 @@ namespace {
 
 // create refuses the values with ILAW_INVALID_PARAMETER, no instance and a message.
 void expect_refused(const Trial& trial, const Values& values) {
-  const SetupStruct given(trial.setup, values);
   const std::string setting = joined(text_of(trial.setup), "; ", text_of(values));
-  set_setting(setting);
   Refusal refusal{};
-  if (create(trial.law, given.given, refusal))
+  if (create(trial.law, trial.setup, values, refusal))
     throw Finding{"create accepted them", "ILAW_INVALID_PARAMETER", setting};
   if (refusal.code != ILAW_INVALID_PARAMETER)
     throw Finding{joined("create returned ", refusal.code, ": ", refusal.message),
@@ -411,9 +409,8 @@ std::vector<Value> table_limit(const Trial& trial, const ilaw_parameter& p) {
 
 bool field_per_node(const Trial& trial, const ilaw_parameter& p, Draw&) {
   if (!has(p, ILAW_FLAG_FIELD)) return false;
-  const SetupStruct given(trial.setup, with(trial.values, per_node(p)));
   Refusal refusal{};
-  if (!create(trial.law, given.given, refusal))
+  if (!create(trial.law, trial.setup, with(trial.values, per_node(p)), refusal))
     fail(trial, joined("create refused the field '", p.name, "' per node: ", refusal.message),
          "an instance: hosts give a field that they have per node");
   return true;

@@ -12,11 +12,6 @@
 namespace ilaw::check {
 namespace {
 
-Draw other(const Draw& draw) {
-  Draw copy = draw;
-  return Draw(copy.below(1U << 30));
-}
-
 // The same call again and again, with nothing else between.
 bool twice(const Trial& trial, Draw& draw) {
   const Script script = draw_script(trial, draw);
@@ -33,30 +28,56 @@ bool twice(const Trial& trial, Draw& draw) {
   return true;
 }
 
-// Another motion in between changes nothing: an instance remembers nothing of what it evaluated.
-bool instance_forgets(const Trial& trial, Draw& draw) {
-  Draw apart = other(draw);
-  const Script script = draw_script(trial, draw), between = draw_script(trial, apart, {9, 7});
-  const std::vector<Results> expected = run(trial, script);
-  run(trial, between);
-  expect_same(trial, script, expected, run(trial, script), "after another motion of the same instance");
-  return true;
+// The bits of a run come back in another one of the same script.
+using Repeat = std::vector<Results> (*)(const Trial& trial, const Script& script, Draw& draw);
+Judge on_repeats(const char* how, std::size_t step_count, Repeat repeat) {
+  return on_trials([=](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw, {13, step_count, true});
+    const std::vector<Results> expected = run(Trial(trial.law, trial.setup, trial.values), script);
+    expect_same(trial, script, expected, repeat(trial, script, draw), how);
+    return true;
+  });
 }
 
-bool instances_apart(const Trial& trial, Draw& draw) {
-  Draw apart = other(draw);
-  const std::optional<Values> values = draw_values(trial.law, trial.setup, apart);
+std::vector<Results> after_another(const Trial& trial, const Script& script, Draw& draw) {
+  run(trial, script);
+  run(trial, draw_script(trial, draw, {9, 7}));
+  return run(trial, script);
+}
+
+std::vector<Results> beside_another(const Trial& trial, const Script& script, Draw& draw) {
+  const std::optional<Values> values = draw_values(trial.law, trial.setup, draw);
   const Trial neighbour(trial.law, trial.setup, values ? *values : trial.values);
-  const Script script = draw_script(trial, draw), beside = draw_script(neighbour, apart);
-  const std::vector<Results> expected = run(trial, script);
+  const Script beside = draw_script(neighbour, draw);
   Started arrays(trial, script[0]), others(neighbour, beside[0]);
   std::vector<Results> found;
   for (std::size_t k = 0; k < script.size(); ++k) {
-    others.evaluate(beside[k]);
+    others.evaluate(beside[k % beside.size()]);
     found.push_back(arrays.evaluate(script[k]));
   }
-  expect_same(trial, script, expected, found, "in turn with another instance");
-  return true;
+  return found;
+}
+
+// New steps, old ones: nothing of an instance depends on them.
+std::vector<Results> after_other_steps(const Trial& trial, const Script& script, Draw&) {
+  Script coarse = script;
+  for (Inputs& in : coarse) {
+    in.velocity_step *= 7.0;
+    in.position_step *= 3.0;
+  }
+  run(trial, coarse);
+  return run(trial, script);
+}
+
+// A second half that starts from stored state, in an instance that saw nothing of the first.
+std::vector<Results> restarted(const Trial& trial, const Script& script, Draw&) {
+  std::vector<Results> found = run(trial, script);
+  const std::size_t half = std::max<std::size_t>(1, script.size() / 2);
+  const Trial second(trial.law, trial.setup, trial.values);
+  Arrays arrays(second, script[0]);
+  arrays.set_state(found[half - 1].state);
+  for (std::size_t k = half; k < script.size(); ++k) found[k] = arrays.evaluate(script[k]);
+  return found;
 }
 
 bool threads(const Trial& trial, Draw& draw) {
@@ -90,54 +111,24 @@ void globals(const Subject& subject) {
       "the library's globals were not found");
 }
 
-// New steps, old ones: nothing of an instance depends on them.
-bool steps_change(const Trial& trial, Draw& draw) {
-  const Script script = draw_script(trial, draw);
-  Script coarse = script;
-  for (Inputs& in : coarse) {
-    in.velocity_step *= 7.0;
-    in.position_step *= 3.0;
-  }
-  const Trial fresh(trial.law, trial.setup, trial.values);
-  const std::vector<Results> expected = run(fresh, script);
-  run(trial, coarse);
-  expect_same(trial, script, expected, run(trial, script), "after steps of another size");
-  return true;
-}
-
-// A second half that starts from stored state, in a process that saw nothing of the first.
-bool restart(const Trial& trial, Draw& draw) {
-  const Script script = draw_script(trial, draw, {13, 8, true});
-  const Trial first(trial.law, trial.setup, trial.values);
-  std::vector<Results> expected = run(first, script);
-  const std::size_t half = std::max<std::size_t>(1, script.size() / 2);
-  const Trial second(trial.law, trial.setup, trial.values);
-  Arrays arrays(second, script[0]);
-  arrays.set_state(expected[half - 1].state);
-  std::vector<Results> found(expected.begin(), expected.begin() + static_cast<std::ptrdiff_t>(half));
-  for (std::size_t k = half; k < script.size(); ++k) found.push_back(arrays.evaluate(script[k]));
-  expect_same(trial, script, expected, found,
-              "restarted from the state after step " + std::to_string(half - 1));
-  return true;
-}
-
 }  // namespace
 
 std::vector<Rule> purity_rules() {
-  return {{"purity-twice", "The same call gives the same bits again.", "ilaw.h, ilaw_law.evaluate",
-           on_trials(twice)},
-          {"purity-history", "An instance remembers nothing of what it evaluated.", "ilaw.h, ilaw_instance",
-           on_trials(instance_forgets)},
-          {"purity-instances", "Two instances do not see each other.", "ilaw.h, ilaw_law.evaluate",
-           on_trials(instances_apart)},
-          {"purity-threads", "Any number of threads may evaluate one instance at a time.", "abi.md, Threads",
-           on_trials(threads)},
-          {"purity-globals", "evaluate changes no global of the library.", "ilaw.h, ilaw_law.evaluate",
-           needing(Needs::motion, globals)},
-          {"purity-steps", "Both steps may change at every call; nothing of an instance depends on them.",
-           "abi.md, Which velocity, which step", on_trials(steps_change)},
-          {"restart", "A motion goes on with the same bits from a stored state, in another instance.",
-           "abi.md, State", on_trials(restart)}};
+  return {
+      {"purity-twice", "The same call gives the same bits again.", "ilaw.h, ilaw_law.evaluate",
+       on_trials(twice)},
+      {"purity-history", "An instance remembers nothing of what it evaluated.", "ilaw.h, ilaw_instance",
+       on_repeats("after another motion of the same instance", 5, after_another)},
+      {"purity-instances", "Two instances do not see each other.", "ilaw.h, ilaw_law.evaluate",
+       on_repeats("in turn with another instance", 5, beside_another)},
+      {"purity-threads", "Any number of threads may evaluate one instance at a time.", "abi.md, Threads",
+       on_trials(threads)},
+      {"purity-globals", "evaluate changes no global of the library.", "ilaw.h, ilaw_law.evaluate",
+       needing(Needs::motion, globals)},
+      {"purity-steps", "Both steps may change at every call; nothing of an instance depends on them.",
+       "abi.md, Which velocity, which step", on_repeats("after steps of another size", 5, after_other_steps)},
+      {"restart", "A motion goes on with the same bits from a stored state, in another instance.",
+       "abi.md, State", on_repeats("restarted in the middle", 8, restarted)}};
 }
 
 }  // namespace ilaw::check

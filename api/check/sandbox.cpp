@@ -59,16 +59,15 @@ DescribeAddress describe_address = nullptr;
 
 // Cuts what is too long; for a signal handler too.
 template <std::size_t N>
-void put(std::array<char, N>& room, const char* text) {
-  std::size_t at = 0;
-  for (; text[at] != '\0' && at + 1 < N; ++at) room[at] = text[at];
-  room[at] = '\0';
-}
-template <std::size_t N>
 void append(std::array<char, N>& room, const char* text) {
   std::size_t at = std::strlen(room.data());
   for (; *text != '\0' && at + 1 < N; ++at) room[at] = *text++;
   room[at] = '\0';
+}
+template <std::size_t N>
+void put(std::array<char, N>& room, const char* text) {
+  room[0] = '\0';
+  append(room, text);
 }
 
 // The library may have written over the zero at its end.

@@ -177,8 +177,13 @@ std::optional<Instance> create(const ilaw_law& law, const ilaw_setup& setup, Ref
 }
 
 std::optional<Instance> create(const ilaw_law& law, const Setup& setup, const Values& values) {
-  const SetupStruct given(setup, values);
   Refusal refusal{};
+  return create(law, setup, values, refusal);
+}
+
+std::optional<Instance> create(const ilaw_law& law, const Setup& setup, const Values& values,
+                               Refusal& refusal) {
+  const SetupStruct given(setup, values);
   set_setting(joined(text_of(setup), "; ", text_of(values)));
   return create(law, given.given, refusal);
 }
@@ -186,16 +191,11 @@ std::optional<Instance> create(const ilaw_law& law, const Setup& setup, const Va
 namespace {
 
 Instance created(const ilaw_law& law, const Setup& setup, const Values& values) {
-  const SetupStruct given(setup, values);
   Refusal refusal{};
-  set_setting(joined(text_of(setup), "; ", text_of(values)));
-  std::optional<Instance> made = create(law, given.given, refusal);
-  if (!made)
-    throw Finding{joined("create refused them with code ", refusal.code, ": ", refusal.message),
-                  "an instance, since it accepted these parameters before",
-                  joined(text_of(setup), "; ", text_of(values)),
-                  {}};
-  return std::move(*made);
+  if (std::optional<Instance> made = create(law, setup, values, refusal)) return std::move(*made);
+  throw Finding{joined("create refused them with code ", refusal.code, ": ", refusal.message),
+                "an instance, since it accepted these parameters before",
+                joined(text_of(setup), "; ", text_of(values))};
 }
 
 }  // namespace

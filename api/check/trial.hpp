@@ -120,6 +120,8 @@ class Instance {
 // Makes an instance, or says why not.
 std::optional<Instance> create(const ilaw_law& law, const ilaw_setup& setup, Refusal& refusal);
 std::optional<Instance> create(const ilaw_law& law, const Setup& setup, const Values& values);
+std::optional<Instance> create(const ilaw_law& law, const Setup& setup, const Values& values,
+                               Refusal& refusal);
 
 // A law with parameters and a setup that it accepts.
 struct Trial {

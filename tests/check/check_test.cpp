@@ -473,7 +473,8 @@ INSTANTIATE_TEST_SUITE_P(
                       std::pair{"rolling_turned", "isotropy"}, std::pair{"rolling_work", "energy-balance"},
                       std::pair{"rolling_velocity", "velocity-output"},
                       std::pair{"postit_unturned", "frame-turned"}, std::pair{"rccm_force", "energy-made"},
-                      std::pair{"table_friction_turned", "energy-made"}),
+                      std::pair{"table_friction_turned", "energy-made"}, std::pair{"tie_area", "units"},
+                      std::pair{"tie_unit", "units"}),
     [](const auto& drawn) { return std::string(drawn.param.first); });
 
 class Shipped : public ::testing::TestWithParam<std::string> {};
