@@ -14,80 +14,91 @@
 
 namespace ilaw::check {
 
-// As a child process returns them.
+// What a child process returns.
+struct Left {
+  Finding finding{};             // seen is empty where the rule holds
+  std::string why{}, missing{};  // it is not judged; there is no such library
+  std::string path{};            // of the library
+  std::vector<std::string> laws{};
+  Reach reach{};
+};
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(NamedArray, name, values)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, seen, allowed, setting, arrays)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Range, least, largest, changed)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Reach, steps, statuses, states)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Left, finding, why, missing, path, laws, reach)
 
 namespace {
 
 using nlohmann::json;
 
-// Keeps all bits of a number, and any text.
-std::string packed(const json& values) {
+// CBOR keeps all bits of a number, and any text.
+std::string packed(const Left& left) {
   std::string bytes;
-  json::to_cbor(values, bytes);
+  json::to_cbor(left, bytes);
   return bytes;
 }
 
-// In the child. Empty where the rule holds.
-json verdict_of(const std::string& file, const std::string& law, const Rule& rule, std::uint64_t seed,
-                const Options& options) {
+// Stops at a value that lies deeper than those of Left: nlohmann's parser of CBOR calls itself for each
+// level.
+class Shallow : public nlohmann::json_sax<json> {
+ public:
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool start_object(std::size_t) override { return ++depth_ <= most; }
+  bool start_array(std::size_t) override { return ++depth_ <= most; }
+  bool end_object() override { return --depth_ >= 0; }
+  bool end_array() override { return --depth_ >= 0; }
+  bool parse_error(std::size_t, const std::string&, const json::exception&) override { return false; }
+
+ private:
+  static constexpr int most = 8;
+  int depth_ = 0;
+};
+
+// A library may have written over what its process left.
+Left unpacked(const std::string& bytes) {
+  Shallow shallow;
+  try {
+    if (json::sax_parse(bytes, &shallow, json::input_format_t::cbor))
+      return json::from_cbor(bytes).get<Left>();
+  } catch (const json::exception&) {  // numbers where texts should be
+  }
+  return {.finding = {"the library wrote over the result of the check", "that it writes to its own memory"}};
+}
+
+// In the child.
+std::string judged(const std::string& file, const std::string& law, const Rule& rule, std::uint64_t seed,
+                   const Options& options) {
+  Left left;
   try {
     const ProcessState before_loading;
     calling("the loader");
     const ilaw::library library(file);
     keep_part(options.part);
-    rule.judge({library, *library.law(law), seed, options.parameters, before_loading});
-    return json::object();
+    rule.judge.look({library, *library.law(law), seed, options.parameters, before_loading});
   } catch (const Finding& finding) {
-    return finding;
+    left.finding = finding;
   } catch (const NotJudged& reason) {
-    return {{"why", reason.why}};
+    left.why = reason.why;
   } catch (const ilaw::error& error) {
-    return Finding{error.what(), "a library that opens again", {}, {}};
+    left.finding = {error.what(), "a library that opens again"};
   }
-}
-
-std::string judged(const std::string& file, const std::string& law, const Rule& rule, std::uint64_t seed,
-                   const Options& options) {
-  json text = verdict_of(file, law, rule, seed, options);
-  text["reach"] = reach_of_thread();
-  return packed(text);
-}
-
-Outcome outcome_of(const std::string& law, const Rule& rule, const Ending& ending) {
-  Outcome outcome{law, rule.id, Verdict::passed, {}, {}};
-  if (ending.late) {
-    outcome.verdict = Verdict::not_judged;
-    outcome.why = "took longer than the limit of time";
-    outcome.late = true;
-  } else if (!ending.returned) {
-    outcome.verdict = Verdict::broken;
-    const std::string call = ending.call.empty() ? "the library" : ending.call;
-    outcome.finding = {call + " " + ending.how, "that it returns", ending.setting, {}};
-  } else {
-    const json text = json::from_cbor(ending.result);
-    outcome.verdict = text.contains("why")    ? Verdict::not_judged
-                      : text.contains("seen") ? Verdict::broken
-                                              : Verdict::passed;
-    if (text.contains("why")) outcome.why = text.at("why");
-    if (text.contains("seen")) outcome.finding = text;
-    if (text.contains("reach")) outcome.reach = text.at("reach");
-    if (outcome.verdict == Verdict::broken && outcome.finding.setting.empty())
-      outcome.finding.setting = ending.setting;
-  }
-  if (outcome.verdict == Verdict::broken && !ending.printed.empty())
-    outcome.finding.seen += "; printed: " + ending.printed;
-  return outcome;
+  left.reach = reach_of_thread();
+  return packed(left);
 }
 
 Outcome judge_with(std::uint64_t seed, const std::string& file, const std::string& law, const Rule& rule,
                    const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   const Ending ending = run_apart(options.limits, [&] { return judged(file, law, rule, seed, options); });
-  Outcome outcome = outcome_of(law, rule, ending);
+  Outcome outcome = outcome_of(law, rule.id, ending);
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   outcome.seed = seed;
   outcome.part = options.part;
@@ -130,7 +141,7 @@ Outcome shrunken(Outcome found, const std::string& file, const std::string& law,
 Outcome judge_apart(const std::string& file, const std::string& law, const Rule& rule,
                     const Options& options) {
   Outcome outcome = judge_with(options.seeds.at(0), file, law, rule, options);
-  for (std::size_t k = 1; k < options.seeds.size() && rule.needs == Needs::motion; ++k) {
+  for (std::size_t k = 1; k < options.seeds.size() && rule.judge.needs == Needs::motion; ++k) {
     if (outcome.verdict == Verdict::broken || outcome.late) break;
     Outcome next = judge_with(options.seeds[k], file, law, rule, options);
     next.seconds += outcome.seconds;
@@ -186,7 +197,7 @@ class LawCheck {
     for (std::size_t k = first; k < outcomes_.size(); ++k) all_.add(outcomes_[k].reach);
     for (std::size_t k = first; k < outcomes_.size(); ++k) {
       Outcome& outcome = outcomes_[k];
-      const bool moves = outcome.reach.steps > 0 && rule_of(outcome.rule).needs == Needs::motion;
+      const bool moves = outcome.reach.steps > 0 && rule_of(outcome.rule).judge.needs == Needs::motion;
       if (outcome.verdict == Verdict::passed && moves) outcome.missing = missing_in(outcome.reach, all_);
     }
   }
@@ -218,7 +229,7 @@ class LawCheck {
     std::uint64_t seed = *std::max_element(options_.seeds.begin(), options_.seeds.end());
     std::vector<Outcome*> left;
     for (std::size_t k = first; k < outcomes_.size(); ++k)
-      if (rule_of(outcomes_[k].rule).needs == Needs::motion) left.push_back(&outcomes_[k]);
+      if (rule_of(outcomes_[k].rule).judge.needs == Needs::motion) left.push_back(&outcomes_[k]);
     for (;;) {
       std::erase_if(left, [](const Outcome* one) { return one->verdict == Verdict::broken; });
       if (left.empty() || Clock::now() >= end) return;
@@ -239,9 +250,9 @@ class LawCheck {
   }
 
   Outcome judge(const Rule& rule) const {
-    const char* lacking = rule.needs >= Needs::instance && !creates_ ? creates_id
-                          : rule.needs == Needs::motion && !returns_ ? returns_id
-                                                                     : nullptr;
+    const char* lacking = rule.judge.needs >= Needs::instance && !creates_ ? creates_id
+                          : rule.judge.needs == Needs::motion && !returns_ ? returns_id
+                                                                           : nullptr;
     if (lacking) return {law_, rule.id, Verdict::not_judged, {}, std::string("needs ") + lacking};
     return judge_apart(file_, law_, rule, options_);
   }
@@ -264,37 +275,31 @@ class LawCheck {
   Reach all_;  // what the rules reached together
 };
 
-// The library's path and its laws, as a child process found them.
-struct Opened {
-  std::string path;
-  std::vector<std::string> laws;
-};
-
 std::string describe(const std::string& name_or_path) {
+  Left left;
   try {
     calling("the loader");
     const ilaw::library library(name_or_path);
-    json laws = json::array();
+    left.path = library.path();
     for (std::uint32_t k = 0; k < library.plugin().law_count; ++k)
-      laws.push_back(library.plugin().laws[k]->id);
-    return packed({{"path", library.path()}, {"laws", laws}});
+      left.laws.emplace_back(library.plugin().laws[k]->id);
   } catch (const ilaw::error& error) {
-    if (error.code() == ILAW_NOT_FOUND) return packed({{"missing", error.what()}});
-    return packed(Finding{error.what(), "a library that the loader opens", {}, {}});
+    if (error.code() == ILAW_NOT_FOUND)
+      left.missing = error.what();
+    else
+      left.finding = {error.what(), "a library that the loader opens"};
   }
+  return packed(left);
 }
 
-Opened open(const std::string& name_or_path, const Options& options, std::vector<Outcome>& outcomes) {
-  const Rule& rule = rule_of(opens_id);
+// The library's path and its laws, as a child process found them.
+Left open(const std::string& name_or_path, const Options& options, std::vector<Outcome>& outcomes) {
   const Ending ending = run_apart(options.limits, [&] { return describe(name_or_path); });
-  const json text = ending.returned ? json::from_cbor(ending.result) : json::object();
-  if (text.contains("missing")) throw UsageError(text.at("missing").get<std::string>());
-  if (!text.contains("laws")) {
-    outcomes.push_back(outcome_of("", rule, ending));
-    return {};
-  }
-  if (wanted(rule, options)) outcomes.push_back({"", rule.id, Verdict::passed, {}, {}});
-  return {text.at("path"), text.at("laws")};
+  const Left left = ending.returned ? unpacked(ending.result) : Left{};
+  if (!left.missing.empty()) throw UsageError(left.missing);
+  const Outcome outcome = outcome_of("", opens_id, ending);
+  if (outcome.verdict != Verdict::passed || wanted(rule_of(opens_id), options)) outcomes.push_back(outcome);
+  return left;
 }
 
 void check_usage(const Options& options) {
@@ -309,11 +314,11 @@ std::string refusal_of(const std::string& file, const std::string& name, const V
   const ilaw_law& law = *library.law(name);
   Refusal refusal{};
   for (const Setup& setup : setups_of(law))
-    if (create(law, SetupStruct(setup, values).given, refusal)) return "";
+    if (create(law, setup, values, refusal)) return "";
   return refusal.message.empty() ? "code " + std::to_string(refusal.code) : refusal.message;
 }
 
-void check_parameters(const Opened& opened, const Options& options) {
+void check_parameters(const Left& opened, const Options& options) {
   if (!options.parameters || opened.path.empty()) return;
   const std::string law = options.law.empty() && opened.laws.size() == 1 ? opened.laws[0] : options.law;
   if (law.empty())
@@ -325,7 +330,7 @@ void check_parameters(const Opened& opened, const Options& options) {
     throw UsageError("law '" + law + "' refuses the parameters: " + ending.result);
 }
 
-void check_law(const Opened& opened, const std::string& law) {
+void check_law(const Left& opened, const std::string& law) {
   if (law.empty() || opened.path.empty()) return;
   if (std::find(opened.laws.begin(), opened.laws.end(), law) != opened.laws.end()) return;
   std::string names;
@@ -335,10 +340,32 @@ void check_law(const Opened& opened, const std::string& law) {
 
 }  // namespace
 
+Outcome outcome_of(const std::string& law, const std::string& rule, const Ending& ending) {
+  Outcome outcome{law, rule, Verdict::passed};
+  outcome.late = ending.late;
+  if (ending.late) {
+    outcome.why = "took longer than the limit of time";
+  } else if (!ending.returned) {
+    const std::string call = ending.call.empty() ? "the library" : ending.call;
+    outcome.finding = {call + " " + ending.how, "that it returns"};
+  } else {
+    const Left left = unpacked(ending.result);
+    outcome.why = left.why;
+    outcome.finding = left.finding;
+    outcome.reach = left.reach;
+  }
+  if (!outcome.why.empty()) outcome.verdict = Verdict::not_judged;
+  if (outcome.finding.seen.empty()) return outcome;
+  outcome.verdict = Verdict::broken;
+  if (outcome.finding.setting.empty()) outcome.finding.setting = ending.setting;
+  if (!ending.printed.empty()) outcome.finding.seen += "; printed: " + ending.printed;
+  return outcome;
+}
+
 std::vector<Outcome> check(const std::string& name_or_path, const Options& options) {
   check_usage(options);
   std::vector<Outcome> outcomes;
-  const Opened opened = open(name_or_path, options, outcomes);
+  const Left opened = open(name_or_path, options, outcomes);
   check_law(opened, options.law);
   check_parameters(opened, options);
   const auto is_chosen = [&](const std::string& law) { return options.law.empty() || options.law == law; };

@@ -33,8 +33,8 @@ enum class Verdict { passed, broken, not_judged };
 struct Outcome {
   std::string law, rule;  // law empty: of the library
   Verdict verdict;
-  Finding finding;         // where it is broken
-  std::string why;         // where it is not judged
+  Finding finding{};       // where it is broken
+  std::string why{};       // where it is not judged
   bool late = false;       // not judged, because of the limit of time
   std::uint64_t seed = 0;  // of the finding
   Part part{};             // that has the finding, too
@@ -43,6 +43,9 @@ struct Outcome {
   // Statuses and state variables of the law that this rule did not reach, where it needs motion.
   std::vector<std::string> missing{};
 };
+
+// What the end of a child process says of a rule.
+Outcome outcome_of(const std::string& law, const std::string& rule, const Ending& ending);
 
 // The library is not there, or has no such law; there is no such rule.
 class UsageError : public std::runtime_error {

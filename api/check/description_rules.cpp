@@ -33,30 +33,23 @@ void exports_entry(const Subject& subject) {
   }
   if (count > most_named) names += ", ...";
   if (count > 0)
-    throw Finding{"beside its entry the library exports " + std::to_string(count) +
-                      (count == 1 ? " symbol: " : " symbols: ") + names,
-                  ILAW_ENTRY_NAME " alone: compile with -fvisibility=hidden, link with a version script",
-                  {},
-                  {}};
+    throw Finding{joined("beside its entry the library exports ", count,
+                         (count == 1 ? " symbol: " : " symbols: "), names),
+                  ILAW_ENTRY_NAME " alone: compile with -fvisibility=hidden, link with a version script"};
 }
 
 std::string all_of(const ilaw_law& law) {
-  std::string text = std::string(law.id) + "|" + law.title + "|" + law.doc;
-  for (const std::uint32_t number : {law.dimensions, law.delassus_forms, law.frames, law.numbers, law.inputs,
-                                     law.outputs, law.capabilities, law.permissions, law.reference_count,
-                                     law.parameter_count, law.state_variable_count, law.amount_count})
-    text += "|" + std::to_string(number);
-  for (std::uint32_t k = 0; k < law.parameter_count; ++k) {
-    const ilaw_parameter& p = *law.parameters[k];
-    text += std::string("|") + p.name + "|" + p.symbol + "|" + p.unit + "|" + p.doc;
-    for (const double number : {p.minimum, p.maximum, p.default_value}) text += "|" + text_of(number);
-    for (const std::uint32_t number : {p.kind, p.flags, p.choice_count, p.axis_count})
-      text += "|" + std::to_string(number);
-    for (std::uint32_t c = 0; c < p.choice_count; ++c) text += std::string("|") + p.choices[c];
-    for (std::uint32_t a = 0; a < p.axis_count; ++a) text += std::string("|") + p.axes[a];
+  std::string text = joined(law.id, "|", law.title, "|", law.doc);
+  const auto add = [&text](const auto&... parts) { ((text += joined("|", parts)), ...); };
+  add(law.dimensions, law.delassus_forms, law.frames, law.numbers, law.inputs, law.outputs, law.capabilities,
+      law.permissions, law.reference_count, law.parameter_count, law.state_variable_count, law.amount_count);
+  for (const ilaw_parameter* p : all_parameters(law)) {
+    add(p->name, p->symbol, p->unit, p->doc, p->minimum, p->maximum, p->default_value, p->kind, p->flags,
+        p->choice_count, p->axis_count);
+    for (std::uint32_t c = 0; c < p->choice_count; ++c) add(p->choices[c]);
+    for (std::uint32_t a = 0; a < p->axis_count; ++a) add(p->axes[a]);
   }
-  for (std::uint32_t k = 0; k < law.amount_count; ++k)
-    text += std::string("|") + law.amounts[k]->name + "|" + law.amounts[k]->unit;
+  for (std::uint32_t k = 0; k < law.amount_count; ++k) add(law.amounts[k]->name, law.amounts[k]->unit);
   return text;
 }
 
@@ -75,8 +68,7 @@ const ilaw_plugin* entry_of(const Subject& subject) {
 const ilaw_law& law_of(const ilaw_plugin& plugin, const Subject& subject) {
   for (std::uint32_t k = 0; k < plugin.law_count; ++k)
     if (std::strcmp(plugin.laws[k]->id, subject.law.id) == 0) return *plugin.laws[k];
-  throw Finding{
-      "the entry describes no law '" + std::string(subject.law.id) + "' any more", "the same laws", {}, {}};
+  throw Finding{joined("the entry describes no law '", subject.law.id, "' any more"), "the same laws"};
 }
 
 void description_constant(const Subject& subject) {
@@ -87,148 +79,105 @@ void description_constant(const Subject& subject) {
     return true;
   });
   const ilaw_plugin* const second = entry_of(subject);
-  if (first != second) throw Finding{"the entry returned another pointer", "the same pointer", {}, {}};
+  if (first != second) throw Finding{"the entry returned another pointer", "the same pointer"};
   const std::string after = all_of(law_of(*second, subject));
   if (before != after)
-    throw Finding{"the description was " + before + " and became " + after, "the same description", {}, {}};
+    throw Finding{joined("the description was ", before, " and became ", after), "the same description"};
 }
 
 [[noreturn]] void fail_unit(const std::string& what, const char* unit) {
-  throw Finding{what + " has the unit \"" + unit + "\"",
+  throw Finding{joined(what, " has the unit \"", unit, "\""),
                 "factors kg, m, s, N, J, Pa, Hz, W, K, rad, 1, with . and /, powers m^2 or m^p of a "
-                "parameter's symbol",
-                {},
-                {}};
+                "parameter's symbol"};
 }
 
 void units(const Subject& subject) {
-  std::vector<std::string> symbols;
-  for (std::uint32_t k = 0; k < subject.law.parameter_count; ++k)
-    symbols.emplace_back(subject.law.parameters[k]->symbol);
-  for (std::uint32_t k = 0; k < subject.law.parameter_count; ++k) {
-    const ilaw_parameter& p = *subject.law.parameters[k];
-    if (p.kind != ILAW_KIND_CHOICE && !parse_unit(p.unit, symbols))
-      fail_unit("parameter '" + std::string(p.name) + "'", p.unit);
-  }
+  const std::vector<std::string> symbols = symbols_of(subject.law);
+  for (const ilaw_parameter* p : all_parameters(subject.law))
+    if (p->kind != ILAW_KIND_CHOICE && !parse_unit(p->unit, symbols))
+      fail_unit(joined("parameter '", p->name, "'"), p->unit);
   for (std::uint32_t k = 0; k < subject.law.amount_count; ++k)
-    if (!parse_unit(subject.law.amounts[k]->unit, symbols))
-      fail_unit("amount '" + std::string(subject.law.amounts[k]->name) + "'", subject.law.amounts[k]->unit);
+    if (const ilaw_amount& amount = *subject.law.amounts[k]; !parse_unit(amount.unit, symbols))
+      fail_unit(joined("amount '", amount.name, "'"), amount.unit);
 }
 
 // A description in C that leaves the maximum out has the range [0, 0]. The loader accepts it: a parameter may
 // be 0 or infinite.
 void ranges(const Subject& subject) {
-  for (std::uint32_t k = 0; k < subject.law.parameter_count; ++k) {
-    const ilaw_parameter& p = *subject.law.parameters[k];
-    const bool is_single = p.minimum == p.maximum && !(p.flags & ILAW_FLAG_ALLOWS_INFINITY);
-    if (p.kind != ILAW_KIND_CHOICE && is_single)
-      throw Finding{
-          "parameter '" + std::string(p.name) + "' allows the value " + text_of(p.minimum) + " alone",
-          "a maximum above the minimum, or ILAW_FLAG_ALLOWS_INFINITY",
-          {},
-          {}};
-  }
+  for (const ilaw_parameter* p : all_parameters(subject.law))
+    if (p->kind != ILAW_KIND_CHOICE && p->minimum == p->maximum && !has(*p, ILAW_FLAG_ALLOWS_INFINITY))
+      throw Finding{joined("parameter '", p->name, "' allows the value ", p->minimum, " alone"),
+                    "a maximum above the minimum, or ILAW_FLAG_ALLOWS_INFINITY"};
 }
 
-std::string bits(std::uint32_t mask) { return std::to_string(mask); }
-
-void info_within_description(const Subject& subject) {
-  for_trials(subject, [&](const Trial& trial, Draw&) {
-    const ilaw_instance_info& info = trial.info;
-    const std::uint32_t frame = ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT;
-    if (const std::uint32_t more =
-            (info.inputs | info.balance_inputs) & ~(trial.law.inputs | frame | ILAW_INPUT_V_PREVIOUS))
-      fail(trial, "the instance reads inputs " + bits(more), "inputs of the law, " + bits(trial.law.inputs));
-    if (info.inputs & ~(trial.law.inputs | frame))
-      fail(trial, "the instance reads inputs " + bits(info.inputs),
-           "inputs of the law, " + bits(trial.law.inputs));
-    if (const std::uint32_t more = info.capabilities & ~trial.law.capabilities)
-      fail(trial, "the instance has capabilities " + bits(more),
-           "capabilities of the law, " + bits(trial.law.capabilities));
-    if (const std::uint32_t fewer = trial.law.permissions & ~info.permissions)
-      fail(trial, "the instance lacks permissions " + bits(fewer),
-           "those of the law hold with any parameters");
-    return true;
-  });
+bool info_within_description(const Trial& trial, Draw&) {
+  const ilaw_law& law = trial.law;
+  const ilaw_instance_info& info = trial.info;
+  const std::uint32_t inputs = law.inputs | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT;
+  const auto expect_within = [&](const char* what, std::uint32_t more, const char* of, std::uint32_t most) {
+    if (more) fail(trial, joined("the instance ", what, " ", more), joined(of, " of the law, ", most));
+  };
+  expect_within("reads inputs", (info.inputs | info.balance_inputs) & ~(inputs | ILAW_INPUT_V_PREVIOUS),
+                "inputs", law.inputs);
+  expect_within("reads inputs", info.inputs & ~inputs, "inputs", law.inputs);
+  expect_within("has capabilities", info.capabilities & ~law.capabilities, "capabilities", law.capabilities);
+  expect_within("lacks permissions", law.permissions & ~info.permissions, "permissions", law.permissions);
+  return true;
 }
 
-void info_frame(const Subject& subject) {
-  for_trials(subject, [&](const Trial& trial, Draw&) {
-    const bool normal = trial.reads(ILAW_INPUT_NORMAL), tangent = trial.reads(ILAW_INPUT_TANGENT);
-    if (normal != trial.setup.global())
-      fail(trial,
-           normal ? "ILAW_INPUT_NORMAL in the local frame" : "no ILAW_INPUT_NORMAL in the global frame",
-           "ILAW_INPUT_NORMAL always, and only, in the global frame");
-    if (tangent && !trial.setup.has_tangent)
-      fail(trial, "ILAW_INPUT_TANGENT without tangents", "create refuses where it needs tangents");
-    return true;
-  });
+bool info_frame(const Trial& trial, Draw&) {
+  const bool normal = trial.reads(ILAW_INPUT_NORMAL), tangent = trial.reads(ILAW_INPUT_TANGENT);
+  if (normal != trial.setup.global())
+    fail(trial, normal ? "ILAW_INPUT_NORMAL in the local frame" : "no ILAW_INPUT_NORMAL in the global frame",
+         "ILAW_INPUT_NORMAL always, and only, in the global frame");
+  if (tangent && !trial.setup.has_tangent)
+    fail(trial, "ILAW_INPUT_TANGENT without tangents", "create refuses where it needs tangents");
+  return true;
 }
 
 std::string all_of(const ilaw_instance_info& info) {
   std::string text;
-  for (const std::uint64_t number :
-       {std::uint64_t{info.inputs}, std::uint64_t{info.balance_inputs}, info.state_size,
-        std::uint64_t{info.capabilities}, std::uint64_t{info.permissions}, std::uint64_t{info.state_version}})
-    text += std::to_string(number) + " ";
+  const auto add = [&text](const auto&... parts) { ((text += joined(parts, " ")), ...); };
+  add(info.inputs, info.balance_inputs, info.state_size, info.capabilities, info.permissions,
+      info.state_version);
   for (std::uint32_t k = 0; k < info.state_variable_count; ++k)
-    text += std::string(info.state_variables[k]->name) + ":" +
-            std::to_string(info.state_variables[k]->count) + " ";
-  for (std::uint32_t k = 0; k < info.per_node_parameter_count; ++k)
-    text += std::string(info.per_node_parameters[k]) + " ";
-  for (std::uint32_t k = 0; k < info.amount_count; ++k) text += std::string(info.amounts[k]->name) + " ";
+    add(info.state_variables[k]->name, info.state_variables[k]->count);
+  for (std::uint32_t k = 0; k < info.per_node_parameter_count; ++k) add(info.per_node_parameters[k]);
+  for (std::uint32_t k = 0; k < info.amount_count; ++k) add(info.amounts[k]->name);
   return text;
 }
 
-void info_same(const Subject& subject) {
-  for_trials(subject, [&](const Trial& trial, Draw& draw) {
-    const std::string first = all_of(trial.info);
-    run(trial, draw_script(trial, draw));
-    const Trial other(trial.law, trial.setup, trial.values);
-    for (const std::string& again : {all_of(trial.instance.info()), all_of(other.info)})
-      if (again != first) fail(trial, "info says " + again, "what it said first, " + first);
-    return true;
-  });
+bool info_same(const Trial& trial, Draw& draw) {
+  const std::string first = all_of(trial.info);
+  run(trial, draw_script(trial, draw));
+  const Trial other(trial.law, trial.setup, trial.values);
+  for (const std::string& again : {all_of(trial.instance.info()), all_of(other.info)})
+    if (again != first) fail(trial, joined("info says ", again), joined("what it said first, ", first));
+  return true;
 }
 
 // Variables that this dimension and these parameters leave without doubles may be missing.
-void state_described(const Subject& subject) {
-  for_trials(subject, [&](const Trial& trial, Draw&) {
-    for (std::uint32_t k = 0; k < trial.info.state_variable_count; ++k) {
-      const ilaw_state_variable& v = *trial.info.state_variables[k];
-      const auto* const end = trial.law.state_variables + trial.law.state_variable_count;
-      const bool found = std::any_of(trial.law.state_variables, end, [&](const ilaw_state_variable* known) {
-        return std::strcmp(known->name, v.name) == 0 && known->kind == v.kind;
-      });
-      const bool carries_axes = trial.setup.global() && v.kind == ILAW_KIND_AXIS;
-      if (!found && !carries_axes)
-        throw Finding{"the instance has a state variable '" + std::string(v.name) + "' of kind " +
-                          std::to_string(v.kind),
-                      "those of the law's description; axes besides in the global frame",
-                      trial.text(),
-                      {}};
-    }
-    return true;
-  });
+bool state_described(const Trial& trial, Draw&) {
+  const std::span known(trial.law.state_variables, trial.law.state_variable_count);
+  for (const ilaw_state_variable* v : std::span(trial.info.state_variables, trial.info.state_variable_count))
+    if (!(trial.setup.global() && v->kind == ILAW_KIND_AXIS) &&
+        std::none_of(known.begin(), known.end(), [v](const ilaw_state_variable* one) {
+          return std::strcmp(one->name, v->name) == 0 && one->kind == v->kind;
+        }))
+      fail(trial, joined("the instance has a state variable '", v->name, "' of kind ", v->kind),
+           "those of the law's description; axes besides in the global frame");
+  return true;
 }
 
-void amounts_described(const Subject& subject) {
-  for_trials(
-      subject,
-      [&](const Trial& trial, Draw&) {
-        for (std::uint32_t k = 0; k < trial.info.amount_count; ++k) {
-          const ilaw_amount& amount = *trial.info.amounts[k];
-          const auto* const end = trial.law.amounts + trial.law.amount_count;
-          if (std::none_of(trial.law.amounts, end, [&](const ilaw_amount* known) {
-                return std::strcmp(known->name, amount.name) == 0 &&
-                       std::strcmp(known->unit, amount.unit) == 0;
-              }))
-            fail(trial, "the instance has an amount '" + std::string(amount.name) + "' [" + amount.unit + "]",
-                 "those of the law's description");
-        }
-        return trial.law.amount_count > 0;
-      },
-      "the law has no amounts");
+bool amounts_described(const Trial& trial, Draw&) {
+  const std::span known(trial.law.amounts, trial.law.amount_count);
+  for (const ilaw_amount* amount : std::span(trial.info.amounts, trial.info.amount_count))
+    if (std::none_of(known.begin(), known.end(), [amount](const ilaw_amount* one) {
+          return std::strcmp(one->name, amount->name) == 0 && std::strcmp(one->unit, amount->unit) == 0;
+        }))
+      fail(trial, joined("the instance has an amount '", amount->name, "' [", amount->unit, "]"),
+           "those of the law's description");
+  return trial.law.amount_count > 0;
 }
 
 void extension_unknown(const Subject& subject) {
@@ -236,8 +185,7 @@ void extension_unknown(const Subject& subject) {
     if (!extension) return;
     calling("extension");
     if (extension("nobody.nothing/1"))
-      throw Finding{
-          std::string("extension of the ") + of + " gave something for \"nobody.nothing/1\"", "null", {}, {}};
+      throw Finding{joined("extension of the ", of, " gave something for \"nobody.nothing/1\""), "null"};
   };
   ask(subject.law.extension, "law");
   ask(subject.library.plugin().extension, "library");
@@ -270,8 +218,7 @@ void instances_end(const Subject& subject) {
   const std::size_t after = mallinfo2().uordblks + mallinfo2().hblkhd;
   if (after >= before + 16 * count)
     fail(trial,
-         std::to_string(after - before) + " bytes were kept after " + std::to_string(count) +
-             " instances were made and destroyed",
+         joined(after - before, " bytes were kept after ", count, " instances were made and destroyed"),
          "none");
 #endif
 }
@@ -281,34 +228,34 @@ void instances_end(const Subject& subject) {
 std::vector<Rule> description_rules() {
   return {
       {opens_id, "The loader opens the library: it is a law library with a sound description.",
-       "abi.md, The loader", Needs::nothing, opens},
+       "abi.md, The loader", needing(Needs::nothing, opens)},
       {"exports-entry", "A library exports its entry, and nothing else.", "ilaw.h, ILAW_ENTRY",
-       Needs::library, exports_entry},
+       needing(Needs::library, exports_entry)},
       {creates_id,
        "Some parameters within the described ranges are accepted in every dimension, form of H, frame and "
        "number type that the law serves.",
-       "ilaw.h, ilaw_law, create", Needs::library, setups_served},
+       "ilaw.h, ilaw_law, create", needing(Needs::library, setups_served)},
       {"description-constant", "The entry returns the same constant description at every call.",
-       "ilaw.h, ilaw_entry_function", Needs::motion, description_constant},
+       "ilaw.h, ilaw_entry_function", needing(Needs::motion, description_constant)},
       {"description-units", "Units of parameters and amounts are SI units, or 1.",
-       "ilaw.h, ilaw_parameter.unit", Needs::library, units},
+       "ilaw.h, ilaw_parameter.unit", needing(Needs::library, units)},
       {"description-range", "A parameter that is a number allows more than one value.",
-       "ilaw.h, ilaw_parameter.maximum", Needs::library, ranges},
+       "ilaw.h, ilaw_parameter.maximum", needing(Needs::library, ranges)},
       {"extension-unknown", "An extension that nobody knows is null.", "ilaw.h, ilaw_law.extension",
-       Needs::library, extension_unknown},
+       needing(Needs::library, extension_unknown)},
       {"info-within",
        "An instance reads and can do no more than its law's description says, and permits no less.",
-       "ilaw.h, ilaw_law.inputs", Needs::instance, info_within_description},
+       "ilaw.h, ilaw_law.inputs", on_instances(info_within_description)},
       {"info-frame", "Normals are read always, and only, in the global frame; tangents where they are given.",
-       "ilaw.h, ILAW_INPUT_NORMAL", Needs::instance, info_frame},
+       "ilaw.h, ILAW_INPUT_NORMAL", on_instances(info_frame)},
       {"info-same", "Two instances of the same setup say the same of themselves, at every call.",
-       "abi.md, State", Needs::motion, info_same},
+       "abi.md, State", on_trials(info_same)},
       {"state-described", "State variables of an instance are those of the law's description.",
-       "ilaw.h, ilaw_law.state_variables", Needs::instance, state_described},
+       "ilaw.h, ilaw_law.state_variables", on_instances(state_described)},
       {"amounts-described", "Amounts of an instance are those of the law's description.",
-       "ilaw.h, ilaw_law.amounts", Needs::instance, amounts_described},
+       "ilaw.h, ilaw_law.amounts", on_instances(amounts_described, "the law has no amounts")},
       {"instances-end", "destroy takes null, and leaves nothing of an instance behind.",
-       "ilaw.h, ilaw_law.destroy", Needs::instance, instances_end}};
+       "ilaw.h, ilaw_law.destroy", needing(Needs::instance, instances_end)}};
 }
 
 }  // namespace ilaw::check

@@ -85,11 +85,9 @@ void push(Inputs& in, Draw& draw) {
 }
 
 // Laws that limit the step are the scheme's to bound.
-template <class Look>
-void fly(const Subject& subject, Look look) {
-  for_trials(
-      subject,
-      [&](const Trial& trial, Draw& draw) {
+Judge on_flights(void (*look)(const Trial& trial, const Step& step)) {
+  return on_trials(
+      [look](const Trial& trial, Draw& draw) {
         if (!trial.writes(ILAW_OUTPUT_ENERGY) && trial.can(ILAW_CAN_STORE_ENERGY)) return false;
         // A contact that does not read v^- cannot know that a force turned its node round.
         const bool may_be_pushed = trial.reads(ILAW_INPUT_V_PREVIOUS) || trial.can(ILAW_CAN_ADHERE) ||
@@ -100,9 +98,7 @@ void fly(const Subject& subject, Look look) {
           in.velocity_step = in.position_step = 0x1p-10;
           for (std::size_t i = 0; i < point_count; ++i)
             in.gap[i] = in.gap_offset[i] + draw.within(0.0, 3.0) * in.position_step;
-          Heap heap;
-          Arrays arrays(trial, in, {}, heap);
-          arrays.initialise(in);
+          Started arrays(trial, in);
           std::vector<double> stored(point_count);
           std::vector<Terms> terms(point_count);
           for (std::size_t k = 0; k < steps; ++k) {
@@ -134,29 +130,27 @@ void fly(const Subject& subject, Look look) {
       "the law limits the step, or its stored energy is not known");
 }
 
-void not_made(const Subject& subject) {
-  fly(subject, [](const Trial& trial, const Step& step) {
-    if (step.work + step.stored > 256.0 * trial.epsilon() * step.size + least(trial))
-      fail(trial, step.in, step.node,
-           "the impulse did the work " + text_of(step.work) + ", and " + text_of(step.stored) +
-               " more is stored: energy was made",
-           "their sum at most " + text_of(256.0 * trial.epsilon() * step.size));
-  });
+void not_made(const Trial& trial, const Step& step) {
+  const double most = 256.0 * trial.epsilon() * step.size;
+  if (step.work + step.stored > most + least(trial))
+    fail(trial, step.in, step.node,
+         joined("the impulse did the work ", step.work, ", and ", step.stored,
+                " more is stored: energy was made"),
+         joined("their sum at most ", most));
 }
 
-void balanced(const Subject& subject) {
-  fly(subject, [](const Trial& trial, const Step& step) {
-    if (step.found.energy.empty()) return;
-    double dissipated = 0.0;
-    for (int c = 0; c < ILAW_ENERGY_STORED; ++c)
-      dissipated += step.found.energy[step.node * ILAW_ENERGY_COUNT + static_cast<std::size_t>(c)];
-    const double rest = step.work + step.stored + dissipated;
-    if (!(std::abs(rest) <= 256.0 * trial.epsilon() * (step.size + dissipated) + least(trial)))
-      fail(trial, step.in, step.node,
-           "work " + text_of(step.work) + ", dissipated " + text_of(dissipated) + ", stored " +
-               text_of(step.stored) + ": a rest of " + text_of(rest),
-           "a rest of at most " + text_of(256.0 * trial.epsilon() * (step.size + dissipated)));
-  });
+void balanced(const Trial& trial, const Step& step) {
+  if (step.found.energy.empty()) return;
+  double dissipated = 0.0;
+  for (std::size_t c = 0; c < ILAW_ENERGY_STORED; ++c)
+    dissipated += step.found.energy[step.node * ILAW_ENERGY_COUNT + c];
+  const double rest = step.work + step.stored + dissipated,
+               most = 256.0 * trial.epsilon() * (step.size + dissipated);
+  if (!(std::abs(rest) <= most + least(trial)))
+    fail(trial, step.in, step.node,
+         joined("work ", step.work, ", dissipated ", dissipated, ", stored ", step.stored, ": a rest of ",
+                rest),
+         joined("a rest of at most ", most));
 }
 
 // A node alone that approaches, closed, as a batch of its own.
@@ -202,47 +196,40 @@ std::optional<Slopes> slopes_of(Arrays& arrays, const Inputs& in, const std::vec
 
 // v' = v + H (a g + b v), g' = g + h v': its two eigenvalues, of sum 2 + H b + h H a and product 1 + H b,
 // pass -1 where the step is too large (Jury).
-void stable_step_bound(const Subject& subject) {
+bool stable_step_bound(const Trial& trial, Draw& draw) {
   constexpr double below = 0.95, slack = 1e-3;
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        if (trial.setup.floats()) return false;
-        bool judged = false;
-        for (std::size_t k = 0; k < point_count; ++k) {
-          Inputs in = approaching(trial, draw);
-          Heap heap;
-          Arrays arrays(trial, in, {}, heap);
-          double limit = infinity;
-          for (int pass = 0; pass < 4; ++pass) {  // it may depend on the step and on the gap
-            const double depth = in.position_step * length(in.vector(in.v_free, 0));
-            in.gap[0] = in.gap_offset[0] - depth;
-            in.v_previous = in.v_free;
-            arrays.initialise(in);
-            const Results found = arrays.evaluate(in);
-            limit = infinity;
-            if (found.code == ILAW_OK) limit = found.report.stable_velocity_step;
-            if (!std::isfinite(limit) || !(limit > 0.0)) break;
-            in.velocity_step = in.position_step = below * limit;
-          }
-          if (!std::isfinite(limit) || in.velocity_step > limit) continue;
-          arrays.initialise(in);
-          const std::optional<Slopes> found = slopes_of(arrays, in, arrays.state());
-          if (!found) continue;
-          const Vector n = in.normal_at(0);
-          const double h = dot(n, times(in.h(0), n)), product = 1.0 + h * found->by_velocity,
-                       sum = 1.0 + product + in.position_step * h * found->by_gap;
-          judged = true;
-          if (product < -1.0 - slack || sum < -1.0 - product - slack)
-            fail(trial, in, 0,
-                 "at 0.95 of the stable step " + text_of(limit) +
-                     " a node on the law swings ever wider: eigenvalues of sum " + text_of(sum) +
-                     " and product " + text_of(product),
-                 "eigenvalues of size 1 at most");
-        }
-        return judged;
-      },
-      "the law limits no step");
+  if (trial.setup.floats()) return false;
+  bool judged = false;
+  for (std::size_t k = 0; k < point_count; ++k) {
+    Inputs in = approaching(trial, draw);
+    Arrays arrays(trial, in);
+    double limit = infinity;
+    for (int pass = 0; pass < 4; ++pass) {  // it may depend on the step and on the gap
+      const double depth = in.position_step * length(in.vector(in.v_free, 0));
+      in.gap[0] = in.gap_offset[0] - depth;
+      in.v_previous = in.v_free;
+      arrays.initialise(in);
+      const Results found = arrays.evaluate(in);
+      limit = infinity;
+      if (found.code == ILAW_OK) limit = found.report.stable_velocity_step;
+      if (!std::isfinite(limit) || !(limit > 0.0)) break;
+      in.velocity_step = in.position_step = below * limit;
+    }
+    if (!std::isfinite(limit) || in.velocity_step > limit) continue;
+    arrays.initialise(in);
+    const std::optional<Slopes> found = slopes_of(arrays, in, arrays.state());
+    if (!found) continue;
+    const Vector n = in.normal_at(0);
+    const double h = dot(n, times(in.h(0), n)), product = 1.0 + h * found->by_velocity,
+                 sum = 1.0 + product + in.position_step * h * found->by_gap;
+    judged = true;
+    if (product < -1.0 - slack || sum < -1.0 - product - slack)
+      fail(trial, in, 0,
+           joined("at 0.95 of the stable step ", limit,
+                  " a node on the law swings ever wider: eigenvalues of sum ", sum, " and product ", product),
+           "eigenvalues of size 1 at most");
+  }
+  return judged;
 }
 
 }  // namespace
@@ -252,12 +239,12 @@ std::vector<Rule> energy_rules() {
       {"energy-made",
        "A node gains no energy, whatever pushes it and whatever v_smooth is: the work of impulse and moment "
        "and what is stored more is not positive.",
-       "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, not_made},
+       "ilaw.h, ILAW_ENERGY_FRICTION", on_flights(not_made)},
       {"energy-balance", "The parts of the energy are what becomes of the work of impulse and moment.",
-       "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, balanced},
+       "ilaw.h, ILAW_ENERGY_FRICTION", on_flights(balanced)},
       {"stable-step-bound",
        "A node on the law does not swing ever wider below the stable step that is reported.",
-       "ilaw.h, ilaw_report.stable_velocity_step", Needs::motion, stable_step_bound}};
+       "ilaw.h, ilaw_report.stable_velocity_step", on_trials(stable_step_bound, "the law limits no step")}};
 }
 
 }  // namespace ilaw::check

@@ -28,16 +28,14 @@ void Field::put(std::size_t node, std::size_t component, double value) {
   else
     values_[place(node, component)] = value;
 }
-ilaw_input Field::input() const {
+template <class Array>
+Array Field::array() const {
   const std::size_t first = size_ > 0 ? place(0, 0) : 0;
   return {values_ ? values_ + first : nullptr, floats_ ? floats_ + first : nullptr, stride(node_stride_),
           stride(component_stride_)};
 }
-ilaw_output Field::output() const {
-  const std::size_t first = size_ > 0 ? place(0, 0) : 0;
-  return {values_ ? values_ + first : nullptr, floats_ ? floats_ + first : nullptr, stride(node_stride_),
-          stride(component_stride_)};
-}
+ilaw_input Field::input() const { return array<ilaw_input>(); }
+ilaw_output Field::output() const { return array<ilaw_output>(); }
 void Field::clear() {
   if (floats_)
     std::fill_n(floats_, size_, static_cast<float>(sentinel));

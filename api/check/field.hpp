@@ -13,6 +13,7 @@
 namespace ilaw::check {
 
 inline constexpr double sentinel = 123456.75;
+inline constexpr std::uint8_t status_sentinel = 99;
 
 // backward: as interleaved, from the last number to the first, by negative strides.
 enum class Order { interleaved, by_component, spread, backward };
@@ -37,6 +38,8 @@ class Field {
   std::size_t components() const { return components_; }
 
  private:
+  template <class Array>
+  Array array() const;
   std::size_t place(std::size_t node, std::size_t component) const {
     const std::size_t at = node * node_stride_ + component * component_stride_;
     return is_backward_ ? size_ - 1 - at : at;

@@ -16,8 +16,8 @@ struct NamedArray {
 
 // A rule is broken. The rule says what is allowed, and "allowed" does where a number can be given.
 struct Finding {
-  std::string seen, allowed, setting;
-  std::vector<NamedArray> arrays;
+  std::string seen, allowed, setting{};
+  std::vector<NamedArray> arrays{};
 };
 
 // The rule asks for what this law does not promise, or cannot be given.

@@ -44,80 +44,73 @@ class InEnvironment : public Heap {
   bool kept_ = true;
 };
 
-void in_environment(const Subject& subject, void (*enter)(), bool (*leave)(), const char* how) {
-  for_trials(subject, [&](const Trial& trial, Draw& draw) {
+struct Environment {
+  const char* how;
+  void (*enter)();
+  bool (*leave)();
+};
+
+Judge in_environments(const std::vector<Environment>& environments) {
+  return on_trials([=](const Trial& trial, Draw& draw) {
     const Script script = hostile(trial, draw);
     const std::vector<Results> expected = run(trial, script);
-    InEnvironment memory(enter, leave);
-    const std::vector<Results> found = run(trial, script, {}, memory);
-    if (!memory.kept())
-      fail(trial, script[0], 0, std::string("evaluate or initialise did not leave ") + how + " as it was",
-           "the environment as it was found");
-    expect_same(trial, script, expected, found, std::string("with ") + how);
+    for (const auto& [how, enter, leave] : environments) {
+      InEnvironment memory(enter, leave);
+      const std::vector<Results> found = run(trial, script, {}, &memory);
+      if (!memory.kept())
+        fail(trial, script[0], 0, joined("evaluate or initialise did not leave ", how, " as it was"),
+             "the environment as it was found");
+      expect_same(trial, script, expected, found, joined("with ", how));
+    }
     return true;
   });
 }
 
-void flags(const Subject& subject) {
-  in_environment(
-      subject, [] { std::feclearexcept(FE_ALL_EXCEPT); },
-      [] { return std::fetestexcept(FE_ALL_EXCEPT) == 0; }, "no exception flag");
-  in_environment(
-      subject,
-      [] {
-        std::feclearexcept(FE_ALL_EXCEPT);
-        std::feraiseexcept(FE_DIVBYZERO);
-      },
-      [] { return std::fetestexcept(FE_ALL_EXCEPT) == FE_DIVBYZERO; }, "the flag of division by zero");
-}
+const Environment without_flags{"no exception flag", [] { std::feclearexcept(FE_ALL_EXCEPT); },
+                                [] { return std::fetestexcept(FE_ALL_EXCEPT) == 0; }};
+const Environment with_a_flag{"the flag of division by zero",
+                              [] {
+                                std::feclearexcept(FE_ALL_EXCEPT);
+                                std::feraiseexcept(FE_DIVBYZERO);
+                              },
+                              [] { return std::fetestexcept(FE_ALL_EXCEPT) == FE_DIVBYZERO; }};
 
 template <int Mode>
-void in_mode(const Subject& subject, const char* how) {
-  in_environment(
-      subject, [] { std::fesetround(Mode); },
-      [] {
-        const bool kept = std::fegetround() == Mode;
-        std::fesetround(FE_TONEAREST);
-        return kept;
-      },
-      how);
+Environment rounding(const char* how) {
+  return {how, [] { std::fesetround(Mode); },
+          [] {
+            const bool kept = std::fegetround() == Mode;
+            std::fesetround(FE_TONEAREST);
+            return kept;
+          }};
 }
 
-void rounding(const Subject& subject) {
-  in_mode<FE_UPWARD>(subject, "rounding upward");
-  in_mode<FE_TOWARDZERO>(subject, "rounding toward zero");
-}
-
-void flushing(const Subject& subject) {
+Judge flushing() {
 #if defined(__x86_64__)
   constexpr unsigned flush = 0x8040;  // results and operands
-  in_environment(
-      subject, [] { _mm_setcsr(_mm_getcsr() | flush); },
-      [] {
-        const bool kept = (_mm_getcsr() & flush) == flush;
-        _mm_setcsr(_mm_getcsr() & ~flush);
-        return kept;
-      },
-      "subnormal numbers flushed to zero");
+  return in_environments({{"subnormal numbers flushed to zero", [] { _mm_setcsr(_mm_getcsr() | flush); },
+                           [] {
+                             const bool kept = (_mm_getcsr() & flush) == flush;
+                             _mm_setcsr(_mm_getcsr() & ~flush);
+                             return kept;
+                           }}});
 #else
-  static_cast<void>(subject);
-  throw NotJudged{"this processor's mode is not known"};
+  return needing(Needs::motion,
+                 [](const Subject&) { throw NotJudged{"this processor's mode is not known"}; });
 #endif
 }
 
-void trapping(const Subject& subject) {
+Judge trapping() {
 #if defined(__GLIBC__)
   constexpr int traps = FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW | FE_UNDERFLOW;
-  in_environment(
-      subject,
-      [] {
-        std::feclearexcept(FE_ALL_EXCEPT);
-        feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW | FE_UNDERFLOW);
-      },
-      [] { return fedisableexcept(FE_ALL_EXCEPT) == traps; }, "exceptions that trap");
+  return in_environments({{"exceptions that trap",
+                           [] {
+                             std::feclearexcept(FE_ALL_EXCEPT);
+                             feenableexcept(traps);
+                           },
+                           [] { return fedisableexcept(FE_ALL_EXCEPT) == traps; }}});
 #else
-  static_cast<void>(subject);
-  throw NotJudged{"this C library sets no traps"};
+  return needing(Needs::motion, [](const Subject&) { throw NotJudged{"this C library sets no traps"}; });
 #endif
 }
 
@@ -125,12 +118,14 @@ void trapping(const Subject& subject) {
 
 std::vector<Rule> float_rules() {
   constexpr const char* source = "ilaw.h, Conventions";
-  return {{"float-flags", "Exception flags are left as they were.", source, Needs::motion, flags},
-          {"float-rounding", "The rounding mode changes no bit, and stays.", source, Needs::motion, rounding},
-          {"float-flushing", "Flushing of subnormal numbers changes no bit, and stays.", source,
-           Needs::motion, flushing},
-          {"float-traps", "Hosts that trap exceptions get the same bits, and no signal.", source,
-           Needs::motion, trapping}};
+  return {
+      {"float-flags", "Exception flags are left as they were.", source,
+       in_environments({without_flags, with_a_flag})},
+      {"float-rounding", "The rounding mode changes no bit, and stays.", source,
+       in_environments(
+           {rounding<FE_UPWARD>("rounding upward"), rounding<FE_TOWARDZERO>("rounding toward zero")})},
+      {"float-flushing", "Flushing of subnormal numbers changes no bit, and stays.", source, flushing()},
+      {"float-traps", "Hosts that trap exceptions get the same bits, and no signal.", source, trapping()}};
 }
 
 }  // namespace ilaw::check

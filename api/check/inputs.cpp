@@ -27,6 +27,14 @@ void set_full(Inputs& in, std::size_t node, const Matrix& m) {
   for (std::size_t k = 0; k < couplings(d); ++k) values[d + k] = m[off_diagonal[k][0]][off_diagonal[k][1]];
 }
 
+// Vectors of the motion, in the axes of each node or of the host.
+constexpr std::array motions{&Inputs::v_free, &Inputs::v_smooth, &Inputs::v_previous, &Inputs::spin_free,
+                             &Inputs::spin_previous};
+
+void turn(Inputs& in, std::vector<double> Inputs::*of, std::size_t node, const Matrix& by) {
+  if (!(in.*of).empty()) in.set_vector(in.*of, node, times(by, in.vector(in.*of, node)));
+}
+
 // Q^T m Q for the rows of Q as axes.
 Matrix from_axes(const Matrix& m, const Matrix& axes) {
   Matrix out{};
@@ -158,9 +166,7 @@ Inputs turned(Inputs in, const std::vector<Matrix>& axes) {
   in.tangent.resize(in.count * in.dimension);
   for (std::size_t i = 0; i < in.count; ++i) {
     const Matrix to_host = transposed(axes[i]);
-    for (std::vector<double> Inputs::*of : {&Inputs::v_free, &Inputs::v_smooth, &Inputs::v_previous,
-                                            &Inputs::spin_free, &Inputs::spin_previous})
-      if (!(in.*of).empty()) in.set_vector(in.*of, i, times(to_host, in.vector(in.*of, i)));
+    for (const auto of : motions) turn(in, of, i, to_host);
     in.set_vector(in.normal, i, axes[i][0]);
     in.set_vector(in.tangent, i, axes[i][1]);
     if (in.form == ILAW_DELASSUS_FULL) set_full(in, i, h[i]);
@@ -188,10 +194,8 @@ Inputs in_form(Inputs in, const Setup& setup) {
 Inputs turned_as_a_whole(Inputs in, const Matrix& rotation) {
   const Matrix back = transposed(rotation);
   for (std::size_t i = 0; i < in.count; ++i) {
-    for (std::vector<double> Inputs::*of :
-         {&Inputs::v_free, &Inputs::v_smooth, &Inputs::v_previous, &Inputs::normal, &Inputs::tangent,
-          &Inputs::spin_free, &Inputs::spin_previous})
-      if (!(in.*of).empty()) in.set_vector(in.*of, i, times(rotation, in.vector(in.*of, i)));
+    for (const auto of : motions) turn(in, of, i, rotation);
+    for (const auto of : {&Inputs::normal, &Inputs::tangent}) turn(in, of, i, rotation);
     if (in.form == ILAW_DELASSUS_FULL) set_full(in, i, from_axes(in.h(i), back));
   }
   return in;

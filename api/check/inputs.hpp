@@ -60,22 +60,24 @@ struct Inputs {
 };
 
 // The arrays of a batch with numbers of each node, but for parameters; asked: by which bit of the inputs.
+// Some steps may be given an optional one and others not.
 struct NodeArray {
   const char* name;
   std::vector<double> Inputs::*values;
   ilaw_input ilaw_batch::*given;
   std::uint32_t asked = 0;
+  bool is_optional = false;
 };
 inline constexpr std::array node_arrays{
     NodeArray{"v_free", &Inputs::v_free, &ilaw_batch::v_free},
-    NodeArray{"v_smooth", &Inputs::v_smooth, &ilaw_batch::v_smooth, ILAW_INPUT_V_SMOOTH},
+    NodeArray{"v_smooth", &Inputs::v_smooth, &ilaw_batch::v_smooth, ILAW_INPUT_V_SMOOTH, true},
     NodeArray{"delassus", &Inputs::delassus, &ilaw_batch::delassus},
     NodeArray{"gap", &Inputs::gap, &ilaw_batch::gap, ILAW_INPUT_GAP},
-    NodeArray{"gap_offset", &Inputs::gap_offset, &ilaw_batch::gap_offset, ILAW_INPUT_GAP},
+    NodeArray{"gap_offset", &Inputs::gap_offset, &ilaw_batch::gap_offset, ILAW_INPUT_GAP, true},
     NodeArray{"v_previous", &Inputs::v_previous, &ilaw_batch::v_previous, ILAW_INPUT_V_PREVIOUS},
     NodeArray{"area", &Inputs::area, &ilaw_batch::area, ILAW_INPUT_AREA},
-    NodeArray{"normal", &Inputs::normal, &ilaw_batch::normal},
-    NodeArray{"tangent", &Inputs::tangent, &ilaw_batch::tangent},
+    NodeArray{"normal", &Inputs::normal, &ilaw_batch::normal, ILAW_INPUT_NORMAL},
+    NodeArray{"tangent", &Inputs::tangent, &ilaw_batch::tangent, ILAW_INPUT_TANGENT},
     NodeArray{"spin_free", &Inputs::spin_free, &ilaw_batch::spin_free},
     NodeArray{"spin_previous", &Inputs::spin_previous, &ilaw_batch::spin_previous, ILAW_INPUT_V_PREVIOUS}};
 

@@ -27,10 +27,7 @@ GuardedPages::~GuardedPages() {
 }
 
 void* GuardedPages::take(const char* name, std::size_t bytes, Use use) {
-  const bool wanted = use == Use::input    ? guarded_.inputs
-                      : use == Use::output ? guarded_.outputs
-                                           : guarded_.unneeded;
-  if (!wanted) return plain_.take(name, bytes, use);
+  if (use != guarded_) return plain_.take(name, bytes, use);
   const std::size_t pages = bytes / page() + 1;
   void* room = mmap(nullptr, (pages + 2) * page(), PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (room == MAP_FAILED) throw std::bad_alloc();

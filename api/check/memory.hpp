@@ -36,10 +36,8 @@ class Heap : public Memory {
 class GuardedPages : public Memory {
  public:
   enum class Flush { with_the_end, with_the_beginning };
-  struct Guarded {
-    bool inputs = true, outputs = true, unneeded = true;
-  };
-  GuardedPages(Flush flush, Guarded guarded) : flush_(flush), guarded_(guarded) {}
+  // Arrays of this use; others are on the heap.
+  GuardedPages(Flush flush, Use guarded) : flush_(flush), guarded_(guarded) {}
   ~GuardedPages() override;
 
   void* take(const char* name, std::size_t bytes, Use use) override;
@@ -57,7 +55,7 @@ class GuardedPages : public Memory {
   void protect(const Block& block, int rights) const;
 
   Flush flush_;
-  Guarded guarded_;
+  Use guarded_;
   std::vector<Block> blocks_;
   Heap plain_;
   static inline const GuardedPages* current_ = nullptr;

@@ -6,34 +6,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace ilaw::check {
 namespace {
 
 // create refuses the values with ILAW_INVALID_PARAMETER, no instance and a message.
 void expect_refused(const Trial& trial, const Values& values) {
-  const SetupStruct given(trial.setup, values);
-  const std::string setting = text_of(trial.setup) + "; " + text_of(values);
-  set_setting(setting);
+  const std::string setting = joined(text_of(trial.setup), "; ", text_of(values));
   Refusal refusal{};
-  if (create(trial.law, given.given, refusal))
-    throw Finding{"create accepted them", "ILAW_INVALID_PARAMETER", setting, {}};
+  if (create(trial.law, trial.setup, values, refusal))
+    throw Finding{"create accepted them", "ILAW_INVALID_PARAMETER", setting};
   if (refusal.code != ILAW_INVALID_PARAMETER)
-    throw Finding{"create returned " + std::to_string(refusal.code) + ": " + refusal.message,
-                  "ILAW_INVALID_PARAMETER (-2)",
-                  setting,
-                  {}};
+    throw Finding{joined("create returned ", refusal.code, ": ", refusal.message),
+                  "ILAW_INVALID_PARAMETER (-2)", setting};
 }
 
-Value number(const ilaw_parameter& p, double value) { return {p.name, ILAW_KIND_VALUE_NUMBER, value}; }
+Value number(const std::string& name, double value) { return {name, ILAW_KIND_VALUE_NUMBER, value}; }
 Value text(const ilaw_parameter& p, const std::string& word) {
   return {p.name, ILAW_KIND_VALUE_TEXT, 0.0, word};
+}
+Value per_node(const ilaw_parameter& p) { return {p.name, ILAW_KIND_VALUE_PER_NODE}; }
+Value table(const ilaw_parameter& p, const std::vector<TableAxis>& axes, const std::vector<double>& values) {
+  return {p.name, ILAW_KIND_VALUE_TABLE, 0.0, {}, axes, values};
 }
 // A table of one value.
 Value table(const ilaw_parameter& p, const std::vector<TableAxis>& axes, double value) {
   std::size_t size = 1;
   for (const TableAxis& axis : axes) size *= axis.points.size();
-  return {p.name, ILAW_KIND_VALUE_TABLE, 0.0, {}, axes, std::vector<double>(size, value)};
+  return table(p, axes, std::vector<double>(size, value));
 }
 // A value that a table of the parameter may have: that of the trial, or one near the minimum.
 double value_in_table(const Trial& trial, const ilaw_parameter& p) {
@@ -43,9 +45,12 @@ double value_in_table(const Trial& trial, const ilaw_parameter& p) {
 // The fields of the law, which a table over them needs, given per node.
 Values with_fields(const Trial& trial) {
   Values values = trial.values;
-  for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k)
-    if (has(*trial.law.parameters[k], ILAW_FLAG_FIELD))
-      values = with(values, {trial.law.parameters[k]->name, ILAW_KIND_VALUE_PER_NODE});
+  for (const ilaw_parameter* p : all_parameters(trial.law))
+    if (has(*p, ILAW_FLAG_FIELD)) values = with(values, per_node(*p));
+  return values;
+}
+Values without(Values values, const std::string& name) {
+  std::erase_if(values, [&](const Value& value) { return value.name == name; });
   return values;
 }
 bool is_choice(const ilaw_parameter& p) { return p.kind == ILAW_KIND_CHOICE; }
@@ -53,23 +58,26 @@ bool may_be_table(const ilaw_parameter& p) { return !is_choice(p) && p.axis_coun
 bool may_be_per_node(const ilaw_parameter& p) { return !is_choice(p) && has(p, ILAW_FLAG_ALLOWS_PER_NODE); }
 Value default_of(const ilaw_parameter& p) {
   return is_choice(p) ? text(p, p.choices[static_cast<std::size_t>(p.default_value)])
-                      : number(p, p.default_value);
+                      : number(p.name, p.default_value);
 }
 
-template <class Look>
-void for_parameters(const Subject& subject, Look look) {
-  const Trial trial = any_trial(subject);
-  bool judged = false;
-  for (std::uint32_t k = 0; k < subject.law.parameter_count; ++k)
-    judged = look(trial, *subject.law.parameters[k]) || judged;
-  if (!judged) throw NotJudged{"the law has no such parameter"};
+// Each parameter of one trial.
+Judge on_parameters(bool (*look)(const Trial& trial, const ilaw_parameter& p, Draw& draw)) {
+  return {Needs::instance, [look](const Subject& subject) {
+            const Trial trial = any_trial(subject);
+            Draw draw(subject.seed);
+            bool judged = false;
+            for (const ilaw_parameter* p : all_parameters(subject.law))
+              judged = look(trial, *p, draw) || judged;
+            if (!judged) throw NotJudged{"the law has no such parameter"};
+          }};
 }
 
 // What create must refuse for a parameter of a trial; nothing: the rule is not about this one.
 using WrongValues = std::vector<Value> (*)(const Trial& trial, const ilaw_parameter& p);
 template <WrongValues wrong>
-void refuses(const Subject& subject) {
-  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
+Judge refuses() {
+  return on_parameters([](const Trial& trial, const ilaw_parameter& p, Draw&) {
     const std::vector<Value> values = wrong(trial, p);
     for (const Value& value : values) {
       const bool may_need_fields = may_be_table(p) && value.kind == ILAW_KIND_VALUE_TABLE;
@@ -79,12 +87,11 @@ void refuses(const Subject& subject) {
   });
 }
 
-// As for_trials, with each parameter of a trial.
-template <class Look>
-void for_trials_and_parameters(const Subject& subject, Look look, const char* otherwise) {
-  for_trials(
-      subject,
-      [&](const Trial& trial, Draw& draw) {
+// Each parameter that a trial may be given.
+Judge on_trials_and_parameters(bool (*look)(const Trial& trial, const ilaw_parameter& p, Draw& draw),
+                               const char* otherwise) {
+  return on_trials(
+      [look](const Trial& trial, Draw& draw) {
         bool judged = false;
         for (const ilaw_parameter* p : trial.parameters()) judged = look(trial, *p, draw) || judged;
         return judged;
@@ -94,23 +101,16 @@ void for_trials_and_parameters(const Subject& subject, Look look, const char* ot
 
 void unknown(const Subject& subject) {
   const Trial trial = any_trial(subject);
-  std::string name = "nobody_has_this";
-  expect_refused(trial, with(trial.values, {name, ILAW_KIND_VALUE_NUMBER, 1.0}));
-  for (std::uint32_t k = 0; k < subject.law.parameter_count; ++k) {
-    name = std::string(subject.law.parameters[k]->name) + "_";
-    if (!parameter_of(subject.law, name))
-      expect_refused(trial, with(trial.values, {name, ILAW_KIND_VALUE_NUMBER, 1.0}));
-  }
+  std::vector<std::string> names{"nobody_has_this"};
+  for (const ilaw_parameter* p : all_parameters(subject.law)) names.push_back(std::string(p->name) + "_");
+  for (const std::string& name : names)
+    if (!parameter_of(subject.law, name)) expect_refused(trial, with(trial.values, number(name, 1.0)));
 }
 
-void missing(const Subject& subject) {
-  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (!has(p, ILAW_FLAG_REQUIRED)) return false;
-    Values values = trial.values;
-    std::erase_if(values, [&](const Value& value) { return value.name == p.name; });
-    expect_refused(trial, values);
-    return true;
-  });
+bool missing(const Trial& trial, const ilaw_parameter& p, Draw&) {
+  if (!has(p, ILAW_FLAG_REQUIRED)) return false;
+  expect_refused(trial, without(trial.values, p.name));
+  return true;
 }
 
 std::vector<Value> beyond_range(const Trial&, const ilaw_parameter& p) {
@@ -121,26 +121,26 @@ std::vector<Value> beyond_range(const Trial&, const ilaw_parameter& p) {
                              : p.minimum - 1e-9 * std::max(1.0, std::abs(p.minimum));
   const double next = std::nextafter(p.maximum, infinity);
   const double above = whole ? std::max(p.maximum + 1.0, next) : next;
-  std::vector<Value> wrong = {number(p, below)};
-  if (has(p, ILAW_FLAG_EXCLUDES_MINIMUM)) wrong.push_back(number(p, p.minimum));
-  if (above < infinity) wrong.push_back(number(p, above));
+  std::vector<Value> wrong = {number(p.name, below)};
+  if (has(p, ILAW_FLAG_EXCLUDES_MINIMUM)) wrong.push_back(number(p.name, p.minimum));
+  if (above < infinity) wrong.push_back(number(p.name, above));
   return wrong;
 }
 
 std::vector<Value> no_number(const Trial&, const ilaw_parameter& p) {
   if (is_choice(p)) return {};
-  return {number(p, std::nan(""))};
+  return {number(p.name, std::nan(""))};
 }
 
 std::vector<Value> infinite(const Trial&, const ilaw_parameter& p) {
   if (is_choice(p)) return {};
-  if (has(p, ILAW_FLAG_ALLOWS_INFINITY)) return {number(p, -infinity)};
-  return {number(p, -infinity), number(p, infinity)};
+  if (has(p, ILAW_FLAG_ALLOWS_INFINITY)) return {number(p.name, -infinity)};
+  return {number(p.name, -infinity), number(p.name, infinity)};
 }
 
 std::vector<Value> no_whole_number(const Trial&, const ilaw_parameter& p) {
   if (p.kind != ILAW_KIND_INTEGER) return {};
-  return {number(p, std::floor(p.minimum) + 0.5), number(p, std::floor(p.minimum) + 1.5)};
+  return {number(p.name, std::floor(p.minimum) + 0.5), number(p.name, std::floor(p.minimum) + 1.5)};
 }
 
 std::vector<Value> no_choice(const Trial&, const ilaw_parameter& p) {
@@ -149,15 +149,15 @@ std::vector<Value> no_choice(const Trial&, const ilaw_parameter& p) {
 }
 
 std::vector<Value> other_kind(const Trial&, const ilaw_parameter& p) {
-  Value unknown_kind = number(p, p.default_value);
+  Value unknown_kind = number(p.name, p.default_value);
   unknown_kind.kind = 77;
-  return {is_choice(p) ? number(p, 1e6) : text(p, "many"), unknown_kind};
+  return {is_choice(p) ? number(p.name, 1e6) : text(p, "many"), unknown_kind};
 }
 
 std::vector<Value> varying(const Trial&, const ilaw_parameter& p) {
   std::vector<Value> wrong;
   if (p.axis_count == 0) wrong.push_back(table(p, {{"time", {0.0, 1.0}}}, 0.5));
-  if (!has(p, ILAW_FLAG_ALLOWS_PER_NODE)) wrong.push_back({p.name, ILAW_KIND_VALUE_PER_NODE});
+  if (!has(p, ILAW_FLAG_ALLOWS_PER_NODE)) wrong.push_back(per_node(p));
   return wrong;
 }
 
@@ -176,58 +176,44 @@ bool accepted_somewhere(const Trial& trial, const Value& value, Draw& draw) {
   return false;
 }
 
-void accepted(const Subject& subject) {
-  Draw draw(subject.seed);
-  for_parameters(subject, [&](const Trial& trial, const ilaw_parameter& p) {
-    Values ends;
-    if (is_choice(p)) {
-      for (std::uint32_t k = 0; k < p.choice_count; ++k) ends.push_back(text(p, p.choices[k]));
-    } else {
-      if (!has(p, ILAW_FLAG_EXCLUDES_MINIMUM)) ends.push_back(number(p, p.minimum));
-      if (p.maximum < 1e6) ends.push_back(number(p, p.maximum));
-      if (has(p, ILAW_FLAG_ALLOWS_INFINITY)) ends.push_back(number(p, infinity));
-    }
-    for (const Value& value : ends)
-      if (!accepted_somewhere(trial, value, draw))
-        fail(trial, "create refused " + text_of(Values{value}) + " beside 300 sets of other parameters",
-             "accepted beside some, as its description says");
-    return !ends.empty();
-  });
+bool accepted(const Trial& trial, const ilaw_parameter& p, Draw& draw) {
+  Values ends;
+  if (is_choice(p)) {
+    for (std::uint32_t k = 0; k < p.choice_count; ++k) ends.push_back(text(p, p.choices[k]));
+  } else {
+    if (!has(p, ILAW_FLAG_EXCLUDES_MINIMUM)) ends.push_back(number(p.name, p.minimum));
+    if (p.maximum < 1e6) ends.push_back(number(p.name, p.maximum));
+    if (has(p, ILAW_FLAG_ALLOWS_INFINITY)) ends.push_back(number(p.name, infinity));
+  }
+  for (const Value& value : ends)
+    if (!accepted_somewhere(trial, value, draw))
+      fail(trial, joined("create refused ", text_of(Values{value}), " beside 300 sets of other parameters"),
+           "accepted beside some, as its description says");
+  return !ends.empty();
 }
 
-void defaults(const Subject& subject) {
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        Values values = trial.values;
-        for (const ilaw_parameter* p : trial.parameters()) {
-          const bool given = std::any_of(values.begin(), values.end(),
-                                         [&](const Value& value) { return value.name == p->name; });
-          if (!given && !has(*p, ILAW_FLAG_REQUIRED)) values.push_back(default_of(*p));
-        }
-        if (values.size() == trial.values.size()) return false;
-        const Trial said(trial.law, trial.setup, values);
-        const Script script = draw_script(trial, draw);
-        expect_same(said, script, run(trial, script), run(said, script), "with its defaults given");
-        return true;
-      },
-      "all parameters are required");
+bool defaults(const Trial& trial, Draw& draw) {
+  Values values = trial.values;
+  for (const ilaw_parameter* p : trial.parameters()) {
+    const bool given =
+        std::any_of(values.begin(), values.end(), [&](const Value& value) { return value.name == p->name; });
+    if (!given && !has(*p, ILAW_FLAG_REQUIRED)) values.push_back(default_of(*p));
+  }
+  if (values.size() == trial.values.size()) return false;
+  const Trial said(trial.law, trial.setup, values);
+  const Script script = draw_script(trial, draw);
+  expect_same(said, script, run(trial, script), run(said, script), "with its defaults given");
+  return true;
 }
 
-void needs_spins(const Subject& subject) {
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw&) {
-        bool judged = false;
-        for (std::uint32_t k = 0; k < trial.law.parameter_count && !trial.setup.spins(); ++k) {
-          const ilaw_parameter& p = *trial.law.parameters[k];
-          if (!has(p, ILAW_FLAG_NEEDS_SPINS)) continue;
-          expect_refused(trial, with(trial.values, default_of(p)));
-          judged = true;
-        }
-        return judged;
-      },
-      "no parameter needs spins");
+bool needs_spins(const Trial& trial, Draw&) {
+  bool judged = false;
+  for (const ilaw_parameter* p : all_parameters(trial.law)) {
+    if (trial.setup.spins() || !has(*p, ILAW_FLAG_NEEDS_SPINS)) continue;
+    expect_refused(trial, with(trial.values, default_of(*p)));
+    judged = true;
+  }
+  return judged;
 }
 
 // Throws where a constant value that is given in another way changes a bit.
@@ -237,7 +223,7 @@ bool expect_no_change(const Trial& trial, const Value& value, Draw& draw) {
   // An array of floats has the float next to a default such as 0.1; a table has doubles.
   const double constant = value.kind == ILAW_KIND_VALUE_PER_NODE ? trial.setup.rounded(exact) : exact;
   if (std::isinf(constant) || !in_range(p, constant)) return false;
-  const Trial plain(trial.law, trial.setup, with(trial.values, number(p, constant)));
+  const Trial plain(trial.law, trial.setup, with(trial.values, number(p.name, constant)));
   const Values values = with(trial.values, value);
   if (!create(trial.law, trial.setup, values)) return false;  // does not go together with the others
   const Trial varied(trial.law, trial.setup, values);
@@ -261,26 +247,21 @@ std::vector<std::vector<TableAxis>> axes_for(const ilaw_parameter& p) {
   return all;
 }
 
-void table_constant(const Subject& subject) {
-  for_trials_and_parameters(
-      subject,
-      [](const Trial& trial, const ilaw_parameter& p, Draw& draw) {
-        const double value = number_of(trial.law, trial.values, p.name);
-        if (!may_be_table(p) || !in_range(p, value)) return false;
-        bool judged = false;
-        for (const std::vector<TableAxis>& axes : axes_for(p)) {
-          // Fields need a value: the one that they have anyway.
-          Values values = trial.values;
-          for (const TableAxis& axis : axes)
-            if (const ilaw_parameter* field = parameter_of(trial.law, axis.name))
-              values = with(values, number(*field, number_of(trial.law, trial.values, axis.name)));
-          if (!create(trial.law, trial.setup, values)) continue;
-          const Trial plain(trial.law, trial.setup, values);
-          judged = expect_no_change(plain, table(p, axes, value), draw) || judged;
-        }
-        return judged;
-      },
-      "no parameter may be a table");
+bool table_constant(const Trial& trial, const ilaw_parameter& p, Draw& draw) {
+  const double value = number_of(trial.law, trial.values, p.name);
+  if (!may_be_table(p) || !in_range(p, value)) return false;
+  bool judged = false;
+  for (const std::vector<TableAxis>& axes : axes_for(p)) {
+    // Fields need a value: the one that they have anyway.
+    Values values = trial.values;
+    for (const TableAxis& axis : axes)
+      if (const ilaw_parameter* field = parameter_of(trial.law, axis.name))
+        values = with(values, number(field->name, number_of(trial.law, trial.values, axis.name)));
+    if (!create(trial.law, trial.setup, values)) continue;
+    const Trial plain(trial.law, trial.setup, values);
+    judged = expect_no_change(plain, table(p, axes, value), draw) || judged;
+  }
+  return judged;
 }
 
 // Axes whose value the checker sets: the time, and fields of the law.
@@ -297,11 +278,11 @@ bool expect_table_value(const Trial& trial, const Value& given, const std::vecto
   for (std::size_t k = 0; k < place.size(); ++k) {
     const ilaw_parameter* field = parameter_of(trial.law, given.axes[k].name);
     if (field && !in_range(*field, place[k])) return false;
-    if (field) values = with(values, number(*field, place[k]));
+    if (field) values = with(values, number(field->name, place[k]));
     if (given.axes[k].name == "time") time = place[k];
   }
   const ilaw_parameter& p = *parameter_of(trial.law, given.name);
-  const Values constant = with(values, number(p, value));
+  const Values constant = with(values, number(p.name, value));
   if (!in_range(p, value) || !create(trial.law, trial.setup, constant) ||
       !create(trial.law, trial.setup, with(values, given)))
     return false;
@@ -316,40 +297,29 @@ bool expect_table_value(const Trial& trial, const Value& given, const std::vecto
 }
 
 // Places and values are exact in binary, so that any way to interpolate gives the same bits.
-void table_linear(const Subject& subject) {
-  for_trials_and_parameters(
-      subject,
-      [](const Trial& trial, const ilaw_parameter& p, Draw& draw) {
-        if (!may_be_table(p) || p.kind != ILAW_KIND_NUMBER) return false;
-        const double a = static_cast<float>(value_in_table(trial, p)), b = 2.0 * a;
-        bool judged = false;
-        std::vector<std::string> known;
-        for (std::uint32_t n = 0; n < p.axis_count; ++n)
-          if (p.axes[n] != std::string(p.name) && is_known_axis(trial.law, p.axes[n]))
-            known.emplace_back(p.axes[n]);
-        for (const std::string& axis : known) {
-          const Value over_one{p.name, ILAW_KIND_VALUE_TABLE,       0.0,
-                               {},     {{axis, {0.25, 0.75, 1.0}}}, {a, b, a}};
-          const std::pair<double, double> places[] = {{0.125, a}, {0.25, a},  {0.5, 0.5 * (a + b)}, {0.75, b},
-                                                      {1.0, a},   {1.125, a}, {1024.0, a}};
-          for (const auto& [place, value] : places)
-            judged = expect_table_value(trial, over_one, {place}, value, draw) || judged;
-        }
-        if (known.size() < 2) return judged;
-        const Value over_two{p.name,
-                             ILAW_KIND_VALUE_TABLE,
-                             0.0,
-                             {},
-                             {{known[0], {0.25, 0.75, 1.0}}, {known[1], {0.25, 0.75}}},
-                             {a, b, a, a, b, a}};
-        const std::pair<std::vector<double>, double> corners[] = {
-            {{0.25, 0.25}, a}, {{0.25, 0.75}, b}, {{0.75, 0.75}, a},
-            {{1.0, 0.25}, b},  {{2.0, 0.75}, a},  {{0.25, 0.5}, 0.5 * (a + b)}};
-        for (const auto& [place, value] : corners)
-          judged = expect_table_value(trial, over_two, place, value, draw) || judged;
-        return judged;
-      },
-      "no parameter may be a table over time or a field");
+bool table_linear(const Trial& trial, const ilaw_parameter& p, Draw& draw) {
+  if (!may_be_table(p) || p.kind != ILAW_KIND_NUMBER) return false;
+  const double a = static_cast<float>(value_in_table(trial, p)), b = 2.0 * a, middle = 0.5 * (a + b);
+  std::vector<std::string> known;
+  for (std::uint32_t n = 0; n < p.axis_count; ++n)
+    if (p.axes[n] != std::string(p.name) && is_known_axis(trial.law, p.axes[n]))
+      known.emplace_back(p.axes[n]);
+  bool judged = false;
+  const auto expect = [&](const Value& given, const std::vector<double>& place, double value) {
+    judged = expect_table_value(trial, given, place, value, draw) || judged;
+  };
+  for (const std::string& axis : known)
+    for (const auto& [place, value] : std::map<double, double>{
+             {0.125, a}, {0.25, a}, {0.5, middle}, {0.75, b}, {1.0, a}, {1.125, a}, {1024.0, a}})
+      expect(table(p, {{axis, {0.25, 0.75, 1.0}}}, {a, b, a}), {place}, value);
+  if (known.size() < 2) return judged;
+  const Value over_two =
+      table(p, {{known[0], {0.25, 0.75, 1.0}}, {known[1], {0.25, 0.75}}}, {a, b, a, a, b, a});
+  const std::vector<std::pair<std::vector<double>, double>> corners{{{0.25, 0.25}, a}, {{0.25, 0.75}, b},
+                                                                    {{0.75, 0.75}, a}, {{1.0, 0.25}, b},
+                                                                    {{2.0, 0.75}, a},  {{0.25, 0.5}, middle}};
+  for (const auto& [place, value] : corners) expect(over_two, place, value);
+  return judged;
 }
 
 // Some nodes, each with its own values as constants, as they are among nodes with others.
@@ -373,26 +343,19 @@ bool expect_own_constants(const Trial& trial, Draw& draw) {
   return judged;
 }
 
-void node_constant(const Subject& subject) {
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        bool judged = false;
-        for (const ilaw_parameter* one : trial.parameters()) {
-          const ilaw_parameter& p = *one;
-          if (may_be_per_node(p) && in_range(p, number_of(trial.law, trial.values, p.name)))
-            judged = expect_no_change(trial, {p.name, ILAW_KIND_VALUE_PER_NODE}, draw) || judged;
-        }
-        return expect_own_constants(trial, draw) || judged;
-      },
-      "no parameter may be given per node");
+bool node_constant(const Trial& trial, Draw& draw) {
+  bool judged = false;
+  for (const ilaw_parameter* p : trial.parameters())
+    if (may_be_per_node(*p) && in_range(*p, number_of(trial.law, trial.values, p->name)))
+      judged = expect_no_change(trial, per_node(*p), draw) || judged;
+  return expect_own_constants(trial, draw) || judged;
 }
 
 std::vector<Value> table_shape(const Trial& trial, const ilaw_parameter& p) {
   if (!may_be_table(p)) return {};
   const double value = value_in_table(trial, p), not_a_number = std::nan("");
   const auto over = [&](const std::vector<double>& points, const std::vector<double>& values) {
-    return Value{p.name, ILAW_KIND_VALUE_TABLE, 0.0, {}, {{p.axes[0], points}}, values};
+    return table(p, {{p.axes[0], points}}, values);
   };
   return {over({}, {}),
           over({0.0, 0.0}, {value, value}),
@@ -413,19 +376,16 @@ std::vector<Value> table_axes(const Trial& trial, const ilaw_parameter& p) {
   return wrong;
 }
 
-void table_field(const Subject& subject) {
-  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    bool judged = false;
-    for (std::uint32_t k = 0; may_be_table(p) && k < p.axis_count; ++k) {
-      const ilaw_parameter* field = parameter_of(trial.law, p.axes[k]);
-      if (!field || !has(*field, ILAW_FLAG_FIELD)) continue;
-      Values values = trial.values;
-      std::erase_if(values, [&](const Value& value) { return value.name == field->name; });
-      expect_refused(trial, with(values, table(p, {{field->name, {0.0, 1.0}}}, value_in_table(trial, p))));
-      judged = true;
-    }
-    return judged;
-  });
+bool table_field(const Trial& trial, const ilaw_parameter& p, Draw&) {
+  bool judged = false;
+  for (std::uint32_t k = 0; may_be_table(p) && k < p.axis_count; ++k) {
+    const ilaw_parameter* field = parameter_of(trial.law, p.axes[k]);
+    if (!field || !has(*field, ILAW_FLAG_FIELD)) continue;
+    const Value over_field = table(p, {{field->name, {0.0, 1.0}}}, value_in_table(trial, p));
+    expect_refused(trial, with(without(trial.values, field->name), over_field));
+    judged = true;
+  }
+  return judged;
 }
 
 TableAxis long_axis(const char* name, std::size_t count) {
@@ -447,107 +407,98 @@ std::vector<Value> table_limit(const Trial& trial, const ilaw_parameter& p) {
   return wrong;
 }
 
-void field_per_node(const Subject& subject) {
-  for_trials_and_parameters(
-      subject,
-      [](const Trial& trial, const ilaw_parameter& p, Draw&) {
-        if (!has(p, ILAW_FLAG_FIELD)) return false;
-        const SetupStruct given(trial.setup, with(trial.values, {p.name, ILAW_KIND_VALUE_PER_NODE}));
-        Refusal refusal{};
-        if (!create(trial.law, given.given, refusal))
-          fail(trial, "create refused the field '" + std::string(p.name) + "' per node: " + refusal.message,
-               "an instance: hosts give a field that they have per node");
-        return true;
-      },
-      "the law has no fields");
+bool field_per_node(const Trial& trial, const ilaw_parameter& p, Draw&) {
+  if (!has(p, ILAW_FLAG_FIELD)) return false;
+  Refusal refusal{};
+  if (!create(trial.law, trial.setup, with(trial.values, per_node(p)), refusal))
+    fail(trial, joined("create refused the field '", p.name, "' per node: ", refusal.message),
+         "an instance: hosts give a field that they have per node");
+  return true;
 }
 
 // A value per node that is out of range is bad input at its node.
-void node_range(const Subject& subject) {
-  for_trials_and_parameters(
-      subject,
-      [](const Trial& trial, const ilaw_parameter& p, Draw& draw) {
-        const Values values = with(trial.values, {p.name, ILAW_KIND_VALUE_PER_NODE});
-        const double good = number_of(trial.law, trial.values, p.name);
-        if (!may_be_per_node(p) || !std::isfinite(good)) return false;
-        if (!create(trial.law, trial.setup, values)) return false;
-        const Trial varied(trial.law, trial.setup, values);
-        Script script = draw_script(varied, draw, {7, 1}, true);
-        std::vector<double>& own = script[0].per_node[0];
-        std::fill(own.begin(), own.end(), good);
-        Heap heap;
-        Arrays arrays(varied, script[0], {}, heap);
-        if (arrays.initialise(script[0]) != ILAW_OK) return false;
-        const std::vector<double> state = arrays.state();
-        if (arrays.evaluate(script[0]).code != ILAW_OK) return false;
-        for (const double bad :
-             {p.minimum - 1.0, std::nan(""), has(p, ILAW_FLAG_ALLOWS_INFINITY) ? -infinity : infinity}) {
-          own[4] = bad;
-          arrays.set_state(state);
-          const Results found = arrays.evaluate(script[0]);
-          if (found.code != ILAW_BAD_NODES || found.report.first_bad_node != 4)
-            fail(varied, script[0], 4,
-                 "evaluate returned " + std::to_string(found.code) + ", first bad node " +
-                     std::to_string(found.report.first_bad_node),
-                 "ILAW_BAD_NODES (1), node 4");
-        }
-        return true;
-      },
-      "no parameter may be given per node");
+bool node_range(const Trial& trial, const ilaw_parameter& p, Draw& draw) {
+  const Values values = with(trial.values, per_node(p));
+  const double good = number_of(trial.law, trial.values, p.name);
+  if (!may_be_per_node(p) || !std::isfinite(good)) return false;
+  if (!create(trial.law, trial.setup, values)) return false;
+  const Trial varied(trial.law, trial.setup, values);
+  Script script = draw_script(varied, draw, {7, 1}, true);
+  std::vector<double>& own = script[0].per_node[0];
+  std::fill(own.begin(), own.end(), good);
+  Arrays arrays(varied, script[0]);
+  if (arrays.initialise(script[0]) != ILAW_OK) return false;
+  const std::vector<double> state = arrays.state();
+  if (arrays.evaluate(script[0]).code != ILAW_OK) return false;
+  for (const double bad :
+       {p.minimum - 1.0, std::nan(""), has(p, ILAW_FLAG_ALLOWS_INFINITY) ? -infinity : infinity}) {
+    own[4] = bad;
+    arrays.set_state(state);
+    const Results found = arrays.evaluate(script[0]);
+    if (found.code != ILAW_BAD_NODES || found.report.first_bad_node != 4)
+      fail(varied, script[0], 4,
+           joined("evaluate returned ", found.code, ", first bad node ", found.report.first_bad_node),
+           "ILAW_BAD_NODES (1), node 4");
+  }
+  return true;
 }
 
 }  // namespace
 
 std::vector<Rule> parameter_rules() {
-  return {{"parameter-unknown", "A parameter that the law does not have is refused.",
-           "ilaw.h, ILAW_INVALID_PARAMETER", Needs::instance, unknown},
-          {"parameter-missing", "A set without a required parameter is refused.",
-           "ilaw.h, ILAW_FLAG_REQUIRED", Needs::instance, missing},
-          {"parameter-range",
-           "A finite value below the minimum, at an excluded one, or above the maximum is refused.",
-           "ilaw.h, ilaw_parameter.minimum", Needs::instance, refuses<beyond_range>},
-          {"parameter-nan", "NaN is no value of a parameter.", "ilaw.h, ilaw_parameter.minimum",
-           Needs::instance, refuses<no_number>},
-          {"parameter-infinity", "Infinity is refused where it is not allowed, -infinity always.",
-           "ilaw.h, ILAW_FLAG_ALLOWS_INFINITY", Needs::instance, refuses<infinite>},
-          {"parameter-whole", "A count is a whole number.", "ilaw.h, ILAW_KIND_INTEGER", Needs::instance,
-           refuses<no_whole_number>},
-          {"parameter-choice", "A text that is none of the choices is refused.", "ilaw.h, ILAW_KIND_CHOICE",
-           Needs::instance, refuses<no_choice>},
-          {"parameter-kind", "A value of a kind that the parameter does not have is refused.",
-           "ilaw.h, ilaw_argument.kind", Needs::instance, refuses<other_kind>},
-          {"parameter-varying", "Tables, and values per node, are refused where they are not allowed.",
-           "ilaw.h, ilaw_parameter.axes", Needs::instance, refuses<varying>},
-          {"parameter-accepted",
-           "The ends of its range, infinity where allowed, and every choice of a parameter are "
-           "accepted beside some others.",
-           "ilaw.h, ilaw_parameter", Needs::instance, accepted},
-          {"parameter-default", "A parameter that is left out has its default value.",
-           "ilaw.h, ilaw_parameter.default_value", Needs::motion, defaults},
-          {"parameter-spins",
-           "A parameter that needs spins is refused for a form of H without, at its default value, too.",
-           "ilaw.h, ILAW_FLAG_NEEDS_SPINS", Needs::instance, needs_spins},
-          {"table-shape",
-           "A table without points, with points that do not increase or a value out of range is refused.",
-           "ilaw.h, ilaw_axis.points", Needs::instance, refuses<table_shape>},
-          {"table-axes", "A table over no axis, an unknown one, one twice, or more than three is refused.",
-           "ilaw.h, ilaw_argument.axes", Needs::instance, refuses<table_axes>},
-          {"table-field", "A table over a field that is not given is refused.", "ilaw.h, ilaw_argument.axes",
-           Needs::instance, table_field},
-          {"table-limit", "A table of more than ILAW_TABLE_MAX_VALUES values is refused.",
-           "ilaw.h, ILAW_TABLE_MAX_VALUES", Needs::instance, refuses<table_limit>},
-          {"table-constant", "A table of one value gives the bits of that value.",
-           "ilaw.h, ILAW_KIND_VALUE_TABLE", Needs::motion, table_constant},
-          {"table-linear",
-           "A table is linear along each axis and constant beyond its ends; the last axis varies fastest.",
-           "ilaw.h, ILAW_KIND_VALUE_TABLE", Needs::motion, table_linear},
-          {"field-per-node", "A field is accepted per node.", "ilaw.h, ILAW_FLAG_FIELD", Needs::instance,
-           field_per_node},
-          {"per-node-constant",
-           "A value per node gives the bits that it gives as a constant, whatever other nodes have.",
-           "ilaw.h, ILAW_KIND_VALUE_PER_NODE", Needs::motion, node_constant},
-          {"per-node-range", "A value per node that is out of range is bad input at its node.",
-           "ilaw.h, ILAW_KIND_VALUE_PER_NODE", Needs::motion, node_range}};
+  return {
+      {"parameter-unknown", "A parameter that the law does not have is refused.",
+       "ilaw.h, ILAW_INVALID_PARAMETER", needing(Needs::instance, unknown)},
+      {"parameter-missing", "A set without a required parameter is refused.", "ilaw.h, ILAW_FLAG_REQUIRED",
+       on_parameters(missing)},
+      {"parameter-range",
+       "A finite value below the minimum, at an excluded one, or above the maximum is refused.",
+       "ilaw.h, ilaw_parameter.minimum", refuses<beyond_range>()},
+      {"parameter-nan", "NaN is no value of a parameter.", "ilaw.h, ilaw_parameter.minimum",
+       refuses<no_number>()},
+      {"parameter-infinity", "Infinity is refused where it is not allowed, -infinity always.",
+       "ilaw.h, ILAW_FLAG_ALLOWS_INFINITY", refuses<infinite>()},
+      {"parameter-whole", "A count is a whole number.", "ilaw.h, ILAW_KIND_INTEGER",
+       refuses<no_whole_number>()},
+      {"parameter-choice", "A text that is none of the choices is refused.", "ilaw.h, ILAW_KIND_CHOICE",
+       refuses<no_choice>()},
+      {"parameter-kind", "A value of a kind that the parameter does not have is refused.",
+       "ilaw.h, ilaw_argument.kind", refuses<other_kind>()},
+      {"parameter-varying", "Tables, and values per node, are refused where they are not allowed.",
+       "ilaw.h, ilaw_parameter.axes", refuses<varying>()},
+      {"parameter-accepted",
+       "The ends of its range, infinity where allowed, and every choice of a parameter are "
+       "accepted beside some others.",
+       "ilaw.h, ilaw_parameter", on_parameters(accepted)},
+      {"parameter-default", "A parameter that is left out has its default value.",
+       "ilaw.h, ilaw_parameter.default_value", on_trials(defaults, "all parameters are required")},
+      {"parameter-spins",
+       "A parameter that needs spins is refused for a form of H without, at its default value, too.",
+       "ilaw.h, ILAW_FLAG_NEEDS_SPINS", on_instances(needs_spins, "no parameter needs spins")},
+      {"table-shape",
+       "A table without points, with points that do not increase or a value out of range is refused.",
+       "ilaw.h, ilaw_axis.points", refuses<table_shape>()},
+      {"table-axes", "A table over no axis, an unknown one, one twice, or more than three is refused.",
+       "ilaw.h, ilaw_argument.axes", refuses<table_axes>()},
+      {"table-field", "A table over a field that is not given is refused.", "ilaw.h, ilaw_argument.axes",
+       on_parameters(table_field)},
+      {"table-limit", "A table of more than ILAW_TABLE_MAX_VALUES values is refused.",
+       "ilaw.h, ILAW_TABLE_MAX_VALUES", refuses<table_limit>()},
+      {"table-constant", "A table of one value gives the bits of that value.",
+       "ilaw.h, ILAW_KIND_VALUE_TABLE",
+       on_trials_and_parameters(table_constant, "no parameter may be a table")},
+      {"table-linear",
+       "A table is linear along each axis and constant beyond its ends; the last axis varies fastest.",
+       "ilaw.h, ILAW_KIND_VALUE_TABLE",
+       on_trials_and_parameters(table_linear, "no parameter may be a table over time or a field")},
+      {"field-per-node", "A field is accepted per node.", "ilaw.h, ILAW_FLAG_FIELD",
+       needing(Needs::instance, on_trials_and_parameters(field_per_node, "the law has no fields").look)},
+      {"per-node-constant",
+       "A value per node gives the bits that it gives as a constant, whatever other nodes have.",
+       "ilaw.h, ILAW_KIND_VALUE_PER_NODE", on_trials(node_constant, "no parameter may be given per node")},
+      {"per-node-range", "A value per node that is out of range is bad input at its node.",
+       "ilaw.h, ILAW_KIND_VALUE_PER_NODE",
+       on_trials_and_parameters(node_range, "no parameter may be given per node")}};
 }
 
 }  // namespace ilaw::check

@@ -16,41 +16,33 @@ namespace ilaw::check {
 namespace {
 
 // A forbidden call ends the process, and is the finding of the rule.
-void watch(const Subject& subject, Forbidden kind) {
-  for_trials(subject, [&](const Trial& trial, Draw& draw) {
-    Script script = draw_script(trial, draw);
-    script.back().v_free[0] = std::nan("");  // bad input too
-    Heap heap;
-    Arrays arrays(trial, script[0], {}, heap);
-    arrays.initialise(script[0]);
-    for (const Inputs& in : script) {
-      const CallWatch armed(subject.library.path(), kind);
-      arrays.evaluate(in);
-    }
-    return true;
-  });
+Judge without_calls(Forbidden kind) {
+  return {Needs::motion, [kind](const Subject& subject) {
+            for_trials(subject, [&](const Trial& trial, Draw& draw) {
+              Script script = draw_script(trial, draw);
+              script.back().v_free[0] = std::nan("");  // bad input too
+              Started arrays(trial, script[0]);
+              for (const Inputs& in : script) {
+                const CallWatch armed(subject.library.path(), kind);
+                arrays.evaluate(in);
+              }
+              return true;
+            });
+          }};
 }
-
-void allocates(const Subject& subject) { watch(subject, Forbidden::allocation); }
-void locks(const Subject& subject) { watch(subject, Forbidden::lock); }
-void input_output(const Subject& subject) { watch(subject, Forbidden::input_output); }
-void clock(const Subject& subject) { watch(subject, Forbidden::clock); }
-void ending(const Subject& subject) { watch(subject, Forbidden::ending); }
 
 void system_calls(const Subject& subject) {
   struct Prepared {
     Prepared(const Trial& given, Draw& draw)
         : trial(given.law, given.setup, given.values),
           in(draw_script(given, draw, {5, 1})[0]),
-          arrays(trial, in, {}, heap) {
-      arrays.initialise(in);
+          arrays(trial, in) {
       arrays.load(in);
     }
     Trial trial;
     std::string setting = trial.text();
     Inputs in;
-    Heap heap;
-    Arrays arrays;
+    Started arrays;
   };
   std::vector<std::unique_ptr<Prepared>> all;
   for_trials(subject, [&](const Trial& trial, Draw& draw) {
@@ -68,7 +60,7 @@ void system_calls(const Subject& subject) {
     }
     return std::string();
   });
-  if (!ending.returned) throw Finding{"evaluate " + ending.how, "none", ending.setting, {}};
+  if (!ending.returned) throw Finding{joined("evaluate ", ending.how), "none", ending.setting, {}};
   if (!ending.result.empty()) throw NotJudged{"this system filters no system calls"};
 }
 
@@ -84,12 +76,11 @@ void prints(const Subject& subject) {
   std::fflush(nullptr);
   struct stat written {};
   if (fstat(STDOUT_FILENO, &written) == 0 && written.st_size > 0)
-    throw Finding{
-        std::to_string(written.st_size) + " bytes were written to stdout and stderr", "nothing", {}, {}};
+    throw Finding{joined(written.st_size, " bytes were written to stdout and stderr"), "nothing"};
 }
 
 [[noreturn]] void fail_changed(const std::string& call, const std::string& changes, const Trial* trial) {
-  throw Finding{call + " changed " + changes, "nothing of the process", trial ? trial->text() : "", {}};
+  throw Finding{joined(call, " changed ", changes), "nothing of the process", trial ? trial->text() : "", {}};
 }
 
 void loading(const Subject& subject) {
@@ -114,9 +105,7 @@ void calls(const Subject& subject) {
     Script script = draw_script(*own, draw, {5, 2});
     script[1].v_free[0] = std::nan("");
     {
-      Heap heap;
-      Arrays arrays(*own, script[0], {}, heap);
-      arrays.initialise(script[0]);
+      Started arrays(*own, script[0]);
       expect_kept("initialise");
       for (const Inputs& in : script) {
         arrays.evaluate(in);
@@ -133,23 +122,25 @@ void calls(const Subject& subject) {
 
 std::vector<Rule> quiet_rules() {
   constexpr const char* source = "ilaw.h, ilaw_law.evaluate";
-  return {{"evaluate-allocates", "evaluate does not allocate.", source, Needs::motion, allocates},
-          {"evaluate-locks", "evaluate takes no lock and starts no thread.", source, Needs::motion, locks},
+  return {{"evaluate-allocates", "evaluate does not allocate.", source, without_calls(Forbidden::allocation)},
+          {"evaluate-locks", "evaluate takes no lock and starts no thread.", source,
+           without_calls(Forbidden::lock)},
           {"evaluate-io", "evaluate does no input or output, and reads no environment.", source,
-           Needs::motion, input_output},
-          {"evaluate-clock", "evaluate reads no clock and no random numbers.", source, Needs::motion, clock},
+           without_calls(Forbidden::input_output)},
+          {"evaluate-clock", "evaluate reads no clock and no random numbers.", source,
+           without_calls(Forbidden::clock)},
           {"evaluate-ends", "evaluate neither ends the process nor handles signals.", "ilaw.h, Conventions",
-           Needs::motion, ending},
-          {"evaluate-system", "evaluate makes no system call.", source, Needs::motion, system_calls},
-          {"prints-nothing", "No function prints.", "ilaw.h, Conventions", Needs::motion, prints},
+           without_calls(Forbidden::ending)},
+          {"evaluate-system", "evaluate makes no system call.", source, needing(Needs::motion, system_calls)},
+          {"prints-nothing", "No function prints.", "ilaw.h, Conventions", needing(Needs::motion, prints)},
           {"loading-process",
            "Loading and describing a library changes nothing of the process: no file, signal, locale, "
            "variable, limit or mode of numbers.",
-           "ilaw.h, Conventions", Needs::library, loading},
+           "ilaw.h, Conventions", needing(Needs::library, loading)},
           {"calls-process",
            "create, info, initialise, evaluate and destroy change nothing of the process, and leave the x87 "
            "registers empty.",
-           "ilaw.h, Conventions", Needs::motion, calls}};
+           "ilaw.h, Conventions", needing(Needs::motion, calls)}};
 }
 
 }  // namespace ilaw::check

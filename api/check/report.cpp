@@ -59,34 +59,29 @@ std::size_t count(const Checked& checked, Verdict verdict) {
                     [verdict](const Outcome& outcome) { return outcome.verdict == verdict; }));
 }
 
-// The rules that were not judged, by law and reason.
-std::string text_of_not_judged(const Checked& checked) {
-  std::map<std::pair<std::string, std::string>, std::string> rules;
-  for (const Outcome& outcome : checked.outcomes) {
-    if (outcome.verdict != Verdict::not_judged) continue;
-    std::string& listed = rules[{outcome.law, outcome.why}];
-    listed += (listed.empty() ? "" : ", ") + outcome.rule;
-  }
-  std::string text;
-  for (const auto& [of, listed] : rules)
-    text += "  not judged, " + of.first + (of.first.empty() ? "" : ": ") + of.second + ": " + listed + "\n";
-  return text;
-}
-
-// Statuses and states that rules did not reach, by law. The JSON has all of them by rule.
-std::string text_of_missing(const Checked& checked) {
-  constexpr std::size_t most_named = 4;
-  std::map<std::pair<std::string, std::string>, std::vector<std::string>> rules;
-  for (const Outcome& outcome : checked.outcomes)
-    for (const std::string& one : outcome.missing) rules[{outcome.law, one}].push_back(outcome.rule);
+// Rules by law and by what they have in common, a line for each, with the first few of them.
+using Grouped = std::map<std::pair<std::string, std::string>, std::vector<std::string>>;
+std::string lines_of(const Grouped& rules, const char* what, std::size_t most_named) {
   std::string text;
   for (const auto& [of, listed] : rules) {
-    text += "  not judged there, " + of.first + ": " + of.second + ": ";
+    text += joined("  ", what, ", ", of.first, of.first.empty() ? "" : ": ", of.second, ": ");
     for (std::size_t k = 0; k < std::min(most_named, listed.size()); ++k) text += (k ? ", " : "") + listed[k];
-    if (listed.size() > most_named) text += " and " + std::to_string(listed.size() - most_named) + " more";
+    if (listed.size() > most_named) text += joined(" and ", listed.size() - most_named, " more");
     text += "\n";
   }
   return text;
+}
+
+// The rules that were not judged, by reason; statuses and states that rules did not reach. The JSON has all
+// of them by rule.
+std::string text_of_not_judged(const Checked& checked) {
+  constexpr std::size_t most_named = 4;
+  Grouped unjudged, missing;
+  for (const Outcome& outcome : checked.outcomes) {
+    if (outcome.verdict == Verdict::not_judged) unjudged[{outcome.law, outcome.why}].push_back(outcome.rule);
+    for (const std::string& one : outcome.missing) missing[{outcome.law, one}].push_back(outcome.rule);
+  }
+  return lines_of(unjudged, "not judged", rules().size()) + lines_of(missing, "not judged there", most_named);
 }
 
 ordered_json number_or_text(double value) {
@@ -124,7 +119,7 @@ std::string text_of(const Checked& checked) {
           std::to_string(count(checked, Verdict::broken)) + " broken, " +
           std::to_string(count(checked, Verdict::not_judged)) + " not judged (" + text_of_seeds(checked) +
           ")\n";
-  return text + text_of_not_judged(checked) + text_of_missing(checked);
+  return text + text_of_not_judged(checked);
 }
 
 std::string json_of(const Checked& checked) {

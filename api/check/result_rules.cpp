@@ -4,258 +4,201 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace ilaw::check {
 namespace {
 
-// Calls look with the results of every good node of every step.
-template <class Look>
-void for_nodes(const Subject& subject, bool (*applies)(const Trial& trial), Look look,
-               const char* otherwise) {
-  for_trials(
-      subject,
-      [&](const Trial& trial, Draw& draw) {
+// The result of one node in one step.
+struct Node {
+  const Trial& trial;
+  const Inputs& in;
+  const Results& found;
+  std::size_t i;
+  Vector r = found.vector(found.impulse, i, in.dimension), m = found.moment_at(i), n = in.normal_at(i);
+
+  int status() const { return found.status[i]; }
+  const double* energy() const { return &found.energy[i * ILAW_ENERGY_COUNT]; }
+  // Sizes of what cancels in the velocity and in the spin.
+  double natural_velocity() const {
+    return size_of_sum(in.vector(in.v_free, i), in.h(i), r, in.k(i) * length(m));
+  }
+  double natural_spin() const {
+    return size_of_sum(in.spin(in.spin_free, i), in.j(i), m, in.k(i) * length(r));
+  }
+  std::string text(const Vector& a) const { return text_of(a, in.dimension); }
+  [[noreturn]] void fail(const std::string& seen, const std::string& allowed) const {
+    check::fail(trial, in, i, seen, allowed);
+  }
+
+ private:
+  static double size_of_sum(const Vector& free, const Matrix& h, const Vector& r, double coupled) {
+    double size = std::abs(coupled);
+    for (std::size_t a = 0; a < 3; ++a) {
+      size += std::abs(free[a]);
+      for (std::size_t b = 0; b < 3; ++b) size += std::abs(h[a][b] * r[b]);
+    }
+    return size;
+  }
+};
+
+// Calls look with every good node of every step.
+Judge on_nodes(bool (*applies)(const Trial& trial), void (*look)(const Node& at), const char* otherwise) {
+  return on_trials(
+      [=](const Trial& trial, Draw& draw) {
         if (!applies(trial)) return false;
         const Script script = draw_script(trial, draw, {17, 8, true});
         const std::vector<Results> results = run(trial, script);
         for (std::size_t k = 0; k < script.size(); ++k)
           for (std::size_t i = 0; i < script[k].count; ++i)
             if (results[k].status.empty() || results[k].status[i] != ILAW_BAD_INPUT)
-              look(trial, script[k], results[k], i);
+              look({trial, script[k], results[k], i});
         return true;
       },
       otherwise);
 }
 
-Vector impulse(const Inputs& in, const Results& found, std::size_t i) {
-  return found.vector(found.impulse, i, in.dimension);
+bool only_pushes(const Trial& trial) { return !trial.can(ILAW_CAN_ADHERE); }
+// In the local frame, where r_N = 0 and r_T = 0 are numbers without rounding.
+bool only_pushes_locally(const Trial& trial) { return only_pushes(trial) && !trial.setup.global(); }
+bool writes_status(const Trial& trial) { return trial.writes(ILAW_OUTPUT_STATUS); }
+bool writes_velocity(const Trial& trial) { return trial.writes(ILAW_OUTPUT_VELOCITY); }
+bool writes_energy(const Trial& trial) { return trial.writes(ILAW_OUTPUT_ENERGY); }
+bool stores_nothing(const Trial& trial) { return !trial.can(ILAW_CAN_STORE_ENERGY); }
+
+double subnormal(const Trial& trial) { return trial.setup.floats() ? 0x1p-126 : 0.0; }
+
+Vector tangential(const Vector& a, const Vector& n) { return sum(a, scaled(-dot(n, a), n)); }
+
+void complementarity(const Node& at) {
+  const double normal = dot(at.n, at.r);
+  if (normal < -16.0 * at.trial.epsilon() * length(at.r)) at.fail(joined("r_N = ", normal), "r_N >= 0");
 }
 
-// Size of what cancels in free + h r, and in what the coupling of spins adds.
-double size_of_sum(const Vector& free, const Matrix& h, const Vector& r, double coupled) {
-  double size = std::abs(coupled);
-  for (std::size_t a = 0; a < 3; ++a) {
-    size += std::abs(free[a]);
-    for (std::size_t b = 0; b < 3; ++b) size += std::abs(h[a][b] * r[b]);
-  }
-  return size;
-}
-double natural_velocity(const Inputs& in, std::size_t i, const Vector& r, const Vector& m) {
-  return size_of_sum(in.vector(in.v_free, i), in.h(i), r, in.k(i) * length(m));
-}
-double natural_spin(const Inputs& in, std::size_t i, const Vector& r, const Vector& m) {
-  return size_of_sum(in.spin(in.spin_free, i), in.j(i), m, in.k(i) * length(r));
+void friction_needs_pressure(const Node& at) {
+  const auto& [r, m] = std::pair(at.r, at.m);
+  if (r[0] > 0.0) return;
+  if (r[1] != 0.0 || r[2] != 0.0)
+    at.fail(joined("r = ", at.text(r), " without pressure"), "no tangential impulse where r_N = 0");
+  if (m != Vector{})
+    at.fail(joined("moment ", text_of(m, 3), " without pressure"), "no moment where r_N = 0");
 }
 
-void complementarity(const Subject& subject) {
-  for_nodes(
-      subject, [](const Trial& trial) { return !trial.can(ILAW_CAN_ADHERE); },
-      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
-        const Vector r = impulse(in, found, i);
-        const double normal = dot(in.normal_at(i), r);
-        if (normal < -16.0 * trial.epsilon() * length(r))
-          fail(trial, in, i, "r_N = " + text_of(normal), "r_N >= 0");
-      },
-      "the law adheres");
+void status(const Node& at) {
+  const double normal = dot(at.n, at.r);
+  if (at.status() >= ILAW_STATUS_COUNT) at.fail(joined("status ", at.status()), "0 to 7");
+  if (at.status() == ILAW_FREE && at.r != Vector{})
+    at.fail(joined("ILAW_FREE with the impulse ", at.text(at.r)), "no impulse");
+  if (at.status() == ILAW_FREE && at.m != Vector{})
+    at.fail(joined("ILAW_FREE with the moment ", text_of(at.m, 3)), "no moment");
+  const bool sheared =
+      length(at.r) > std::abs(normal) * (1.0 + 64.0 * at.trial.epsilon()) + subnormal(at.trial);
+  if (at.status() == ILAW_CLOSED && (sheared || normal < 0.0))
+    at.fail(joined("ILAW_CLOSED with the impulse ", at.text(at.r)), "pushed, no friction");
 }
 
-// In the local frame, where r_N = 0 is a number without rounding.
-void friction_needs_pressure(const Subject& subject) {
-  for_nodes(
-      subject, [](const Trial& trial) { return !trial.can(ILAW_CAN_ADHERE) && !trial.setup.global(); },
-      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
-        const Vector r = impulse(in, found, i);
-        if (!(r[0] > 0.0) && (r[1] != 0.0 || r[2] != 0.0))
-          fail(trial, in, i, "r = " + text_of(r, in.dimension) + " without pressure",
-               "no tangential impulse where r_N = 0");
-        if (const Vector m = found.moment_at(i); !(r[0] > 0.0) && m != Vector{})
-          fail(trial, in, i, "moment " + text_of(m, 3) + " without pressure", "no moment where r_N = 0");
-      },
-      "the law adheres");
+bool tells_sticking(const Trial& trial) {
+  return writes_status(trial) && stores_nothing(trial) && trial.setup.dimension > 1;
 }
-
-void status(const Subject& subject) {
-  for_nodes(
-      subject, [](const Trial& trial) { return trial.writes(ILAW_OUTPUT_STATUS); },
-      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
-        const std::uint8_t said = found.status[i];
-        const Vector r = impulse(in, found, i);
-        const double normal = dot(in.normal_at(i), r);
-        if (said >= ILAW_STATUS_COUNT) fail(trial, in, i, "status " + std::to_string(said), "0 to 7");
-        if (said == ILAW_FREE && r != Vector{})
-          fail(trial, in, i, "ILAW_FREE with the impulse " + text_of(r, in.dimension), "no impulse");
-        if (const Vector m = found.moment_at(i); said == ILAW_FREE && m != Vector{})
-          fail(trial, in, i, "ILAW_FREE with the moment " + text_of(m, 3), "no moment");
-        const double subnormal = trial.setup.floats() ? 0x1p-126 : 0.0;
-        const bool sheared = length(r) > std::abs(normal) * (1.0 + 64.0 * trial.epsilon()) + subnormal;
-        if (said == ILAW_CLOSED && (sheared || normal < 0.0))
-          fail(trial, in, i, "ILAW_CLOSED with the impulse " + text_of(r, in.dimension),
-               "pushed, no friction");
-      },
-      "the law writes no status");
-}
-
-Vector tangential(const Vector& a, const Vector& n) {
-  const double normal = dot(n, a);
-  return {a[0] - normal * n[0], a[1] - normal * n[1], a[2] - normal * n[2]};
-}
-
 // A spring along the interface may still move where it sticks; without one v_T = -e v_T^- with e from 0 to 1.
-void status_stick(const Subject& subject) {
-  for_nodes(
-      subject,
-      [](const Trial& trial) {
-        return trial.writes(ILAW_OUTPUT_STATUS) && !trial.can(ILAW_CAN_STORE_ENERGY) &&
-               trial.setup.dimension > 1;
-      },
-      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
-        if (found.status[i] != ILAW_STICK) return;
-        const Vector r = impulse(in, found, i), m = found.moment_at(i), n = in.normal_at(i),
-                     v = tangential(sum(in.vector(in.v_free, i), in.gained(i, r, m).velocity), n),
-                     before = tangential(in.vector(in.v_previous, i), n);
-        const double square = dot(before, before), e = square > 0.0 ? -dot(v, before) / square : 0.0;
-        const double part = std::min(std::max(e, 0.0), 1.0);
-        const Vector rest{v[0] + part * before[0], v[1] + part * before[1], v[2] + part * before[2]};
-        const double tolerance = (trial.setup.floats() ? 1e-4 : 1e-9) * natural_velocity(in, i, r, m);
-        if (length(rest) > tolerance)
-          fail(trial, in, i,
-               "ILAW_STICK with the velocity " + text_of(v, in.dimension) + " along the interface",
-               "none, or a part of the opposite of that before");
-      },
-      "the law writes no status, or stores energy");
+void status_stick(const Node& at) {
+  if (at.status() != ILAW_STICK) return;
+  const Vector v = tangential(sum(at.in.vector(at.in.v_free, at.i), at.in.gained(at.i, at.r, at.m).velocity),
+                              at.n),
+               before = tangential(at.in.vector(at.in.v_previous, at.i), at.n);
+  const double square = dot(before, before), e = square > 0.0 ? -dot(v, before) / square : 0.0;
+  const Vector rest = sum(v, scaled(std::min(std::max(e, 0.0), 1.0), before));
+  if (length(rest) > (at.trial.setup.floats() ? 1e-4 : 1e-9) * at.natural_velocity())
+    at.fail(joined("ILAW_STICK with the velocity ", at.text(v), " along the interface"),
+            "none, or a part of the opposite of that before");
 }
 
-void velocity(const Subject& subject) {
-  for_nodes(
-      subject, [](const Trial& trial) { return trial.writes(ILAW_OUTPUT_VELOCITY); },
-      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
-        const Vector r = impulse(in, found, i), m = found.moment_at(i);
-        const Motion gained = in.gained(i, r, m);
-        const auto expect = [&](const char* name, const std::vector<double>& after, const Vector& expected,
-                                double size) {
-          const double tolerance = 64.0 * trial.epsilon() * size;
-          const Vector written = found.vector(after, i, in.dimension);
-          for (std::size_t c = 0; c < in.dimension; ++c)
-            if (!(std::abs(expected[c] - written[c]) <= tolerance))
-              fail(trial, in, i, std::string(name) + "[" + std::to_string(c) + "] = " + text_of(written[c]),
-                   text_of(expected[c]) + " to " + text_of(tolerance) + ", by the impulse that is written");
-        };
-        expect("velocity", found.velocity, sum(in.vector(in.v_free, i), gained.velocity),
-               natural_velocity(in, i, r, m));
-        if (in.spins())
-          expect("spin", found.spin, sum(in.vector(in.spin_free, i), gained.spin), natural_spin(in, i, r, m));
-      },
-      "the law writes no velocity");
+void velocity(const Node& at) {
+  const Motion gained = at.in.gained(at.i, at.r, at.m);
+  const auto expect = [&](const char* name, const std::vector<double>& after, const Vector& expected,
+                          double size) {
+    const double tolerance = 64.0 * at.trial.epsilon() * size;
+    const Vector written = at.found.vector(after, at.i, at.in.dimension);
+    for (std::size_t c = 0; c < at.in.dimension; ++c)
+      if (!(std::abs(expected[c] - written[c]) <= tolerance))
+        at.fail(joined(name, "[", c, "] = ", written[c]),
+                joined(expected[c], " to ", tolerance, ", by the impulse that is written"));
+  };
+  expect("velocity", at.found.velocity, sum(at.in.vector(at.in.v_free, at.i), gained.velocity),
+         at.natural_velocity());
+  if (at.in.spins())
+    expect("spin", at.found.spin, sum(at.in.vector(at.in.spin_free, at.i), gained.spin), at.natural_spin());
 }
 
-void energy_parts(const Subject& subject) {
-  for_nodes(
-      subject, [](const Trial& trial) { return trial.writes(ILAW_OUTPUT_ENERGY); },
-      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
-        const double* parts = &found.energy[i * ILAW_ENERGY_COUNT];
-        for (int c = 0; c < ILAW_ENERGY_STORED; ++c)
-          if (!(parts[c] >= 0.0))
-            fail(trial, in, i, "dissipated part " + std::to_string(c) + " of " + text_of(parts[c]),
-                 "none is negative, or NaN");
-        const double stored = parts[ILAW_ENERGY_STORED];
-        if (!(stored >= 0.0 || stored < 0.0) || (stored != 0.0 && !trial.can(ILAW_CAN_STORE_ENERGY)))
-          fail(trial, in, i, "stored energy " + text_of(stored),
-               "0 without ILAW_CAN_STORE_ENERGY, never NaN");
-      },
-      "the law writes no energy");
+void energy_parts(const Node& at) {
+  for (int c = 0; c < ILAW_ENERGY_STORED; ++c)
+    if (!(at.energy()[c] >= 0.0))
+      at.fail(joined("dissipated part ", c, " of ", at.energy()[c]), "none is negative, or NaN");
+  const double stored = at.energy()[ILAW_ENERGY_STORED];
+  if (std::isnan(stored) || (stored != 0.0 && stores_nothing(at.trial)))
+    at.fail(joined("stored energy ", stored), "0 without ILAW_CAN_STORE_ENERGY, never NaN");
 }
 
-// In the local frame, where r_T = 0 is a number without rounding. A spring along the interface may go slack.
-void energy_friction(const Subject& subject) {
-  for_nodes(
-      subject,
-      [](const Trial& trial) {
-        return trial.writes(ILAW_OUTPUT_ENERGY) && !trial.can(ILAW_CAN_STORE_ENERGY) && !trial.setup.global();
-      },
-      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
-        const Vector r = impulse(in, found, i);
-        const double part = found.energy[i * ILAW_ENERGY_COUNT + ILAW_ENERGY_FRICTION];
-        if (r[1] == 0.0 && r[2] == 0.0 && found.moment_at(i) == Vector{} && part != 0.0)
-          fail(trial, in, i, "friction dissipated " + text_of(part) + " without a tangential impulse", "0");
-      },
-      "the law writes no energy, or stores some");
+// A spring along the interface may go slack.
+bool tells_friction(const Trial& trial) {
+  return writes_energy(trial) && stores_nothing(trial) && !trial.setup.global();
+}
+void energy_friction(const Node& at) {
+  const double part = at.energy()[ILAW_ENERGY_FRICTION];
+  if (at.r[1] == 0.0 && at.r[2] == 0.0 && at.m == Vector{} && part != 0.0)
+    at.fail(joined("friction dissipated ", part, " without a tangential impulse"), "0");
 }
 
 // A law remembers what it breaks, unless a bond forms again in the same step: the status says so.
-void energy_rupture(const Subject& subject) {
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        if (!trial.writes(ILAW_OUTPUT_ENERGY)) return false;
-        const Script script = draw_script(trial, draw, {17, 8, true});
-        const std::vector<Results> results = run(trial, script);
-        const std::size_t size = trial.info.state_size;
-        for (std::size_t k = 1; k < script.size(); ++k)
-          for (std::size_t i = 0; i < script[k].count; ++i) {
-            const double* before = &results[k - 1].state[0] + i * size;
-            const bool same = std::equal(before, before + size, &results[k].state[0] + i * size, same_bits);
-            const double part = results[k].energy[i * ILAW_ENERGY_COUNT + ILAW_ENERGY_RUPTURE];
-            const int said = results[k].status.empty() ? int{ILAW_FREE} : results[k].status[i];
-            if (same && said != ILAW_BROKEN && said != ILAW_HEALED && part != 0.0)
-              fail(trial, script[k], i,
-                   "rupture dissipated " + text_of(part) + " and left the state as it was",
-                   "0 where the state does not change");
-          }
-        return true;
-      },
-      "the law writes no energy");
+bool energy_rupture(const Trial& trial, Draw& draw) {
+  if (!writes_energy(trial)) return false;
+  const Script script = draw_script(trial, draw, {17, 8, true});
+  const std::vector<Results> results = run(trial, script);
+  const std::size_t size = trial.info.state_size;
+  for (std::size_t k = 1; k < script.size(); ++k)
+    for (std::size_t i = 0; i < script[k].count; ++i) {
+      const double* before = &results[k - 1].state[0] + i * size;
+      const bool same = std::equal(before, before + size, &results[k].state[0] + i * size, same_bits);
+      const Node at{trial, script[k], results[k], i};
+      const double part = at.energy()[ILAW_ENERGY_RUPTURE];
+      const int said = at.found.status.empty() ? int{ILAW_FREE} : at.status();
+      if (same && said != ILAW_BROKEN && said != ILAW_HEALED && part != 0.0)
+        at.fail(joined("rupture dissipated ", part, " and left the state as it was"),
+                "0 where the state does not change");
+    }
+  return true;
 }
 
-void amounts_zero(const Subject& subject) {
-  for_nodes(
-      subject,
-      [](const Trial& trial) { return trial.info.amount_count > 0 && trial.writes(ILAW_OUTPUT_STATUS); },
-      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
-        for (std::size_t k = 0; k < found.amounts.size(); ++k) {
-          const double amount = found.amounts[k][i];
-          const std::string said = std::string(trial.info.amounts[k]->name) + " of " + text_of(amount);
-          if (std::isnan(amount)) fail(trial, in, i, said, "never NaN");
-          if (found.status[i] == ILAW_FREE && amount != 0.0)
-            fail(trial, in, i, said + " at a free node", "0");
-        }
-      },
-      "the law has no amounts");
+bool tells_amounts(const Trial& trial) { return trial.info.amount_count > 0 && writes_status(trial); }
+void amounts_zero(const Node& at) {
+  for (std::size_t k = 0; k < at.found.amounts.size(); ++k) {
+    const double amount = at.found.amounts[k][at.i];
+    const std::string said = joined(at.trial.info.amounts[k]->name, " of ", amount);
+    if (std::isnan(amount)) at.fail(said, "never NaN");
+    if (at.status() == ILAW_FREE && amount != 0.0) at.fail(said + " at a free node", "0");
+  }
 }
 
 // The amounts that go into one of the two bodies, by the names of the glossary.
-double heat_at(const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < found.amounts.size(); ++k) {
-    const std::string name = trial.info.amounts[k]->name;
-    if (name != "heat" && name != "counterpart_heat") continue;
-    if (!(found.amounts[k][i] >= 0.0))
-      fail(trial, in, i, name + " of " + text_of(found.amounts[k][i]), ">= 0");
-    sum += found.amounts[k][i];
-  }
-  return sum;
+bool is_heat(const ilaw_amount* amount) {
+  return amount->name == std::string("heat") || amount->name == std::string("counterpart_heat");
 }
-
-void heat_dissipated(const Subject& subject) {
-  for_nodes(
-      subject,
-      [](const Trial& trial) {
-        const auto* const end = trial.info.amounts + trial.info.amount_count;
-        return trial.writes(ILAW_OUTPUT_ENERGY) &&
-               std::any_of(trial.info.amounts, end, [](const ilaw_amount* a) {
-                 return a->name == std::string("heat") || a->name == std::string("counterpart_heat");
-               });
-      },
-      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
-        double dissipated = 0.0;
-        for (std::size_t c = 0; c < ILAW_ENERGY_STORED; ++c)
-          dissipated += found.energy[i * ILAW_ENERGY_COUNT + c];
-        const double heat = heat_at(trial, in, found, i);
-        const double subnormal = trial.setup.floats() ? 0x1p-126 : 0.0;
-        if (heat > dissipated * (1.0 + 16.0 * trial.epsilon()) + subnormal)
-          fail(trial, in, i, "heat of " + text_of(heat),
-               "at most what was dissipated, " + text_of(dissipated));
-      },
-      "the law has no amount called heat or counterpart_heat");
+bool tells_heat(const Trial& trial) {
+  return writes_energy(trial) &&
+         std::any_of(trial.info.amounts, trial.info.amounts + trial.info.amount_count, is_heat);
+}
+void heat_dissipated(const Node& at) {
+  double heat = 0.0;
+  for (std::size_t k = 0; k < at.found.amounts.size(); ++k) {
+    if (!is_heat(at.trial.info.amounts[k])) continue;
+    const double part = at.found.amounts[k][at.i];
+    if (!(part >= 0.0)) at.fail(joined(at.trial.info.amounts[k]->name, " of ", part), ">= 0");
+    heat += part;
+  }
+  const double dissipated = std::accumulate(at.energy(), at.energy() + ILAW_ENERGY_STORED, 0.0);
+  if (heat > dissipated * (1.0 + 16.0 * at.trial.epsilon()) + subnormal(at.trial))
+    at.fail(joined("heat of ", heat), joined("at most what was dissipated, ", dissipated));
 }
 
 // Coefficients of friction by the names that the kit gives them.
@@ -271,51 +214,41 @@ double cone_of(const Trial& trial) {
   return most;
 }
 
-void cone(const Subject& subject) {
-  for_nodes(
-      subject,
-      [](const Trial& trial) {
-        return trial.writes(ILAW_OUTPUT_STATUS) && cone_of(trial) >= 0.0 && std::isfinite(cone_of(trial));
-      },
-      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
-        if (found.status[i] != ILAW_STICK && found.status[i] != ILAW_SLIP) return;
-        const Vector r = impulse(in, found, i), n = in.normal_at(i);
-        const double normal = dot(n, r);
-        const Vector along = tangential(r, n);
-        // r_N = n.r rounds as a part of |r|, however small it is.
-        const double friction = cone_of(trial), most = friction * normal;
-        const double rounding =
-            trial.setup.floats() ? 16.0 * trial.epsilon() * (1.0 + friction) : 1e-12 + 16.0 * ulp * friction;
-        const double subnormal = trial.setup.floats() ? 0x1p-126 * (1.0 + friction) : 0.0;
-        if (length(along) > most + rounding * length(r) + subnormal)
-          fail(trial, in, i, "|r_T| = " + text_of(length(along)), "at most friction r_N = " + text_of(most));
-      },
-      "no parameter is called friction");
+bool has_cone(const Trial& trial) {
+  return writes_status(trial) && cone_of(trial) >= 0.0 && std::isfinite(cone_of(trial));
+}
+void cone(const Node& at) {
+  if (at.status() != ILAW_STICK && at.status() != ILAW_SLIP) return;
+  const double along = length(tangential(at.r, at.n)), friction = cone_of(at.trial),
+               most = friction * dot(at.n, at.r);
+  // r_N = n.r rounds as a part of |r|, however small it is.
+  const double rounding =
+      at.trial.setup.floats() ? 16.0 * at.trial.epsilon() * (1.0 + friction) : 1e-12 + 16.0 * ulp * friction;
+  if (along > most + rounding * length(at.r) + subnormal(at.trial) * (1.0 + friction))
+    at.fail(joined("|r_T| = ", along), joined("at most friction r_N = ", most));
 }
 
 // Any positive step: from picoseconds to hours.
-void step_limits(const Subject& subject) {
-  for_trials(subject, [](const Trial& trial, Draw& draw) {
-    Script script = draw_script(trial, draw, {9, 1}, true);
-    if (run(trial, script)[0].code != ILAW_OK) return false;
-    for (const double step : {1e-13, 3e-7, 0.0171, 11.0, 7300.0}) {
-      Inputs& in = script[0];
-      for (double& gap : in.gap) gap *= step / in.position_step;
-      for (double& offset : in.gap_offset) offset *= step / in.position_step;
-      in.velocity_step = in.position_step = in.time = step;
-      const Results found = run(trial, script)[0];
-      // A spring that is pressed for hours exceeds what a float holds.
-      const bool may_refuse = (trial.may_soften() && step > 0x1p-9) || (trial.setup.floats() && step > 1.0);
-      const bool is_too_large = may_refuse && found.code == ILAW_BAD_NODES;
-      if (found.code != ILAW_OK && !is_too_large)
-        fail(trial, in, 0,
-             "code " + std::to_string(found.code) + " with steps of " + text_of(step) +
-                 " s: " + (found.report.reason ? found.report.reason : "no reason"),
-             "ILAW_OK for any step > 0");
-      expect_finite(trial, in, found);
-    }
-    return true;
-  });
+bool step_limits(const Trial& trial, Draw& draw) {
+  Script script = draw_script(trial, draw, {9, 1}, true);
+  if (run(trial, script)[0].code != ILAW_OK) return false;
+  for (const double step : {1e-13, 3e-7, 0.0171, 11.0, 7300.0}) {
+    Inputs& in = script[0];
+    for (double& gap : in.gap) gap *= step / in.position_step;
+    for (double& offset : in.gap_offset) offset *= step / in.position_step;
+    in.velocity_step = in.position_step = in.time = step;
+    const Results found = run(trial, script)[0];
+    // A spring that is pressed for hours exceeds what a float holds.
+    const bool may_refuse = (trial.may_soften() && step > 0x1p-9) || (trial.setup.floats() && step > 1.0);
+    const bool is_too_large = may_refuse && found.code == ILAW_BAD_NODES;
+    if (found.code != ILAW_OK && !is_too_large)
+      fail(trial, in, 0,
+           joined("code ", found.code, " with steps of ", step,
+                  " s: ", (found.report.reason ? found.report.reason : "no reason")),
+           "ILAW_OK for any step > 0");
+    expect_finite(trial, in, found);
+  }
+  return true;
 }
 
 // The results of a step from the same states, by the law and as a host may tell it.
@@ -336,37 +269,30 @@ OfBonds evaluate_three_times(Arrays& arrays, const Inputs& in) {
   return found;
 }
 
-void held_bonds(const Subject& subject) {
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        if (!trial.can(ILAW_CAN_HOLD_BONDS) || !trial.writes(ILAW_OUTPUT_STATUS)) return false;
-        const Script script = draw_script(trial, draw, {17, 8, true});
-        Heap heap;
-        Arrays arrays(trial, script[0], {}, heap);
-        arrays.initialise(script[0]);
-        for (const Inputs& in : script) {
-          const OfBonds found = evaluate_three_times(arrays, in);
-          for (std::size_t i = 0; i < in.count; ++i) {
-            const auto status = [i](const Results& of) { return of.status[i]; };
-            const auto expect = [&](const Results& of, std::uint8_t allowed, const char* told) {
-              if (status(of) != allowed)
-                fail(trial, in, i, "told to " + (told + (": status " + std::to_string(status(of)))),
-                     "status " + std::to_string(allowed));
-              if (status(found.by_law) == allowed && impulse(in, of, i) != impulse(in, found.by_law, i))
-                fail(trial, in, i, std::string("told to ") + told + ": another impulse",
-                     "that of the law, which says the same");
-            };
-            const std::uint8_t own = status(found.by_law);
-            if (std::max({own, status(found.held), status(found.broken)}) == ILAW_BAD_INPUT) continue;
-            const bool was_bonded = own == ILAW_BONDED || own == ILAW_BROKEN;
-            expect(found.held, was_bonded ? std::uint8_t{ILAW_BONDED} : own, "hold");
-            expect(found.broken, was_bonded ? std::uint8_t{ILAW_BROKEN} : own, "break");
-          }
-        }
-        return true;
-      },
-      "the law does not hold bonds when told");
+bool held_bonds(const Trial& trial, Draw& draw) {
+  if (!trial.can(ILAW_CAN_HOLD_BONDS) || !trial.writes(ILAW_OUTPUT_STATUS)) return false;
+  const Script script = draw_script(trial, draw, {17, 8, true});
+  Started arrays(trial, script[0]);
+  for (const Inputs& in : script) {
+    const OfBonds found = evaluate_three_times(arrays, in);
+    for (std::size_t i = 0; i < in.count; ++i) {
+      const auto status = [i](const Results& of) { return of.status[i]; };
+      const auto expect = [&](const Results& of, std::uint8_t allowed, const char* told) {
+        if (status(of) != allowed)
+          fail(trial, in, i, joined("told to ", told, ": status ", status(of)), joined("status ", allowed));
+        if (status(found.by_law) == allowed && of.vector(of.impulse, i, in.dimension) !=
+                                                   found.by_law.vector(found.by_law.impulse, i, in.dimension))
+          fail(trial, in, i, joined("told to ", told, ": another impulse"),
+               "that of the law, which says the same");
+      };
+      const std::uint8_t own = status(found.by_law);
+      if (std::max({own, status(found.held), status(found.broken)}) == ILAW_BAD_INPUT) continue;
+      const bool was_bonded = own == ILAW_BONDED || own == ILAW_BROKEN;
+      expect(found.held, was_bonded ? std::uint8_t{ILAW_BONDED} : own, "hold");
+      expect(found.broken, was_bonded ? std::uint8_t{ILAW_BROKEN} : own, "break");
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -374,43 +300,46 @@ void held_bonds(const Subject& subject) {
 std::vector<Rule> result_rules() {
   return {
       {"complementarity", "Without ILAW_CAN_ADHERE an impulse pushes or is none: r_N >= 0.",
-       "ilaw.h, ILAW_CAN_ADHERE", Needs::motion, complementarity},
+       "ilaw.h, ILAW_CAN_ADHERE", on_nodes(only_pushes, complementarity, "the law adheres")},
       {"friction-pressure",
        "Without ILAW_CAN_ADHERE there is no tangential impulse and no moment where r_N = 0.",
-       "ilaw.h, ILAW_CAN_ADHERE", Needs::motion, friction_needs_pressure},
+       "ilaw.h, ILAW_CAN_ADHERE", on_nodes(only_pushes_locally, friction_needs_pressure, "the law adheres")},
       {"friction-cone",
        "If a law has a coefficient called friction (and friction_2), the length of r_T of a status stick or "
        "slip is at most the larger one times r_N.",
-       "check.md, Names with a meaning", Needs::motion, cone},
+       "check.md, Names with a meaning", on_nodes(has_cone, cone, "no parameter is called friction")},
       {"status-meaning",
        "A status is one of the eight; free is r = 0 and m = 0, closed is pushed without friction.",
-       "ilaw.h, ILAW_FREE", Needs::motion, status},
+       "ilaw.h, ILAW_FREE", on_nodes(writes_status, status, "the law writes no status")},
       {"status-stick",
        "A node that sticks, of a law that stores no energy, has no velocity along the interface, or a part "
        "of the opposite of that before.",
-       "ilaw.h, ILAW_STICK", Needs::motion, status_stick},
+       "ilaw.h, ILAW_STICK",
+       on_nodes(tells_sticking, status_stick, "the law writes no status, or stores energy")},
       {"velocity-output", "The velocity is v_free + H r + k n x m, and the spin w_free + J m - k n x r.",
-       "ilaw.h, ilaw_batch.velocity", Needs::motion, velocity},
+       "ilaw.h, ilaw_batch.velocity", on_nodes(writes_velocity, velocity, "the law writes no velocity")},
       {"held-bonds",
        "With ILAW_CAN_HOLD_BONDS bonds hold or break as the flags of the batch say, and nothing else changes.",
-       "ilaw.h, ILAW_BATCH_HOLD_BONDS", Needs::motion, held_bonds},
+       "ilaw.h, ILAW_BATCH_HOLD_BONDS", on_trials(held_bonds, "the law does not hold bonds when told")},
       {"energy-parts",
        "No dissipated part is negative and none NaN; nothing is stored without "
        "ILAW_CAN_STORE_ENERGY.",
-       "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, energy_parts},
+       "ilaw.h, ILAW_ENERGY_FRICTION", on_nodes(writes_energy, energy_parts, "the law writes no energy")},
       {"energy-friction",
        "Friction of a law that stores no energy dissipates nothing without a tangential impulse or moment.",
-       "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, energy_friction},
+       "ilaw.h, ILAW_ENERGY_FRICTION",
+       on_nodes(tells_friction, energy_friction, "the law writes no energy, or stores some")},
       {"energy-rupture",
        "Rupture dissipates nothing where the state stays and the status is neither broken nor healed.",
-       "ilaw.h, ILAW_ENERGY_RUPTURE", Needs::motion, energy_rupture},
+       "ilaw.h, ILAW_ENERGY_RUPTURE", on_trials(energy_rupture, "the law writes no energy")},
       {"amounts-zero", "An amount is 0 where the status is free, and never NaN.", "ilaw.h, ilaw_amount",
-       Needs::motion, amounts_zero},
+       on_nodes(tells_amounts, amounts_zero, "the law has no amounts")},
       {"heat-dissipated",
        "The amounts heat and counterpart_heat are not negative, and together at most what was dissipated.",
-       "abi.md, Tables, fields and amounts", Needs::motion, heat_dissipated},
+       "abi.md, Tables, fields and amounts",
+       on_nodes(tells_heat, heat_dissipated, "the law has no amount called heat or counterpart_heat")},
       {"step-limits", "Any positive step is served; a bond that may soften may refuse one that is too large.",
-       "ilaw.h, ilaw_batch.velocity_step", Needs::motion, step_limits}};
+       "ilaw.h, ilaw_batch.velocity_step", on_trials(step_limits)}};
 }
 
 }  // namespace ilaw::check

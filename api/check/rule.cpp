@@ -12,26 +12,6 @@ constexpr std::size_t trials_wanted = 24;
 
 Draw draw_of(const Subject& subject, std::size_t trial) { return Draw(subject.seed * 1000003U + trial); }
 
-using Look = std::function<bool(const Trial& trial, Draw& draw)>;
-
-// Whether one could be judged.
-bool look_at_trials(const Subject& subject, const Look& look) {
-  const std::vector<Setup> setups = setups_of(subject.law);
-  const std::size_t count = std::max(setups.size(), trials_wanted);
-  bool judged = false;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Setup& setup = setups[k % setups.size()];
-    Draw draw = draw_of(subject, k);
-    const std::optional<Values> values = values_of(subject, setup, draw);
-    if (!values) continue;
-    const Trial trial(subject.law, setup, *values);
-    forget_states();
-    set_setting(trial.text());
-    judged = look(trial, draw) || judged;
-  }
-  return judged;
-}
-
 }  // namespace
 
 const std::vector<Rule>& rules() {
@@ -53,19 +33,41 @@ const Rule& rule_of(const std::string& id) {
 }
 
 void for_trials(const Subject& subject, const Look& look, const char* otherwise) {
-  if (!look_at_trials(subject, look)) throw NotJudged{otherwise};
+  const std::vector<Setup> setups = setups_of(subject.law);
+  const std::size_t count = std::max(setups.size(), trials_wanted);
+  bool judged = false;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Setup& setup = setups[k % setups.size()];
+    Draw draw = draw_of(subject, k);
+    const std::optional<Values> values = values_of(subject, setup, draw);
+    if (!values) continue;
+    const Trial trial(subject.law, setup, *values);
+    forget_states();
+    set_setting(trial.text());
+    judged = look(trial, draw) || judged;
+  }
+  if (!judged) throw NotJudged{otherwise};
 }
 
-void for_trials_per_node_too(const Subject& subject, const Look& look, const char* otherwise) {
-  const auto look_twice = [&](const Trial& trial, Draw& draw) {
-    const bool judged = look(trial, draw);
-    const std::optional<Values> values = given_per_node(trial);
-    if (!values) return judged;
-    const Trial varied(trial.law, trial.setup, *values);
-    set_setting(varied.text());
-    return look(varied, draw) || judged;
-  };
-  if (!look_at_trials(subject, look_twice)) throw NotJudged{otherwise};
+Judge on_trials(const Look& look, const char* otherwise) {
+  return {Needs::motion, [=](const Subject& subject) { for_trials(subject, look, otherwise); }};
+}
+
+Judge on_instances(const Look& look, const char* otherwise) {
+  return {Needs::instance, on_trials(look, otherwise).look};
+}
+
+Judge on_trials_per_node_too(const Look& look, const char* otherwise) {
+  return on_trials(
+      [look](const Trial& trial, Draw& draw) {
+        const bool judged = look(trial, draw);
+        const std::optional<Values> values = given_per_node(trial);
+        if (!values) return judged;
+        const Trial varied(trial.law, trial.setup, *values);
+        set_setting(varied.text());
+        return look(varied, draw) || judged;
+      },
+      otherwise);
 }
 
 std::optional<Values> values_of(const Subject& subject, const Setup& setup, Draw& draw) {

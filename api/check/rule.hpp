@@ -28,13 +28,21 @@ struct Subject {
 // Prerequisites for judging a rule.
 enum class Needs { nothing, library, instance, motion };
 
-// Throws Finding or NotJudged.
+// look throws Finding or NotJudged.
+struct Judge {
+  Needs needs;
+  std::function<void(const Subject& subject)> look;
+};
+
+inline Judge needing(Needs needs, const std::function<void(const Subject& subject)>& look) {
+  return {needs, look};
+}
+
 struct Rule {
   const char* id;
   const char* required;
   const char* source;
-  Needs needs;
-  void (*judge)(const Subject& subject);
+  Judge judge;
 };
 
 // The three that others need: Needs::library, instance and motion.
@@ -60,15 +68,18 @@ std::vector<Rule> result_rules();
 std::vector<Rule> energy_rules();
 std::vector<Rule> symmetry_rules();
 
-// Calls look for trials in every setup, with parameters that the law accepts: the same ones for every rule.
-// NotJudged where there was none, which is why "look" says whether it could judge.
-void for_trials(const Subject& subject, const std::function<bool(const Trial& trial, Draw& draw)>& look,
-                const char* otherwise = "the law accepted no parameters");
+// Whether a trial could be judged; if none could, the rule is not judged.
+using Look = std::function<bool(const Trial& trial, Draw& draw)>;
 
-// As for_trials, and each trial again with what may be given per node given so.
-void for_trials_per_node_too(const Subject& subject,
-                             const std::function<bool(const Trial& trial, Draw& draw)>& look,
-                             const char* otherwise = "the law accepted no parameters");
+// Calls look for trials in every setup, with parameters that the law accepts: the same ones for every rule.
+void for_trials(const Subject& subject, const Look& look,
+                const char* otherwise = "the law accepted no parameters");
+Judge on_trials(const Look& look, const char* otherwise = "the law accepted no parameters");
+// The same for a rule that needs no motion.
+Judge on_instances(const Look& look, const char* otherwise = "the law accepted no parameters");
+
+// As on_trials, and each trial again with what may be given per node given so.
+Judge on_trials_per_node_too(const Look& look, const char* otherwise = "the law accepted no parameters");
 
 // The given parameters where the law accepts them in this setup, or drawn ones.
 std::optional<Values> values_of(const Subject& subject, const Setup& setup, Draw& draw);

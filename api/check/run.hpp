@@ -38,11 +38,18 @@ struct Results {
   std::size_t nodes = 0;
   std::int32_t code = ILAW_OK;
   ilaw_report report{};
-  std::vector<double> impulse, state, velocity, energy;
-  std::vector<std::vector<double>> amounts;  // empty where one was not asked for
-  std::vector<std::uint8_t> status;
-  std::vector<double> moment, spin;  // empty where the form of H has no spins
+  std::vector<double> impulse{}, moment{}, state{}, velocity{}, spin{},
+      energy{};                                // empty where there is none
+  std::vector<std::vector<double>> amounts{};  // each empty where it was not asked for
+  std::vector<std::uint8_t> status{};
 
+  // All arrays of numbers; asked: by which bit of the outputs.
+  struct Numbers {
+    const char* name;
+    const std::vector<double>* values;
+    std::uint32_t asked;
+  };
+  std::vector<Numbers> numbers() const;
   Vector moment_at(std::size_t node) const;  // 0 without spins
   Results of_nodes(const std::vector<std::size_t>& which) const;
   Vector vector(const std::vector<double>& of, std::size_t node, std::size_t dimension) const {
@@ -50,10 +57,27 @@ struct Results {
   }
 };
 
-// The arrays of a batch for a trial.
+// The arrays of a batch that results are written to, but for amounts; asked: by which bit of the outputs.
+struct OutputArray {
+  const char* name;
+  std::vector<double> Results::*values;
+  ilaw_output ilaw_batch::*given;
+  std::uint32_t asked = 0;
+  bool is_of_spins = false;
+};
+inline constexpr std::array output_arrays{
+    OutputArray{"impulse", &Results::impulse, &ilaw_batch::impulse},
+    OutputArray{"moment", &Results::moment, &ilaw_batch::moment, 0, true},
+    OutputArray{"state_out", &Results::state, &ilaw_batch::state_out},
+    OutputArray{"velocity", &Results::velocity, &ilaw_batch::velocity, ILAW_OUTPUT_VELOCITY},
+    OutputArray{"spin", &Results::spin, &ilaw_batch::spin, spin_output, true},
+    OutputArray{"energy", &Results::energy, &ilaw_batch::energy, ILAW_OUTPUT_ENERGY}};
+inline constexpr std::size_t state_place = 2;
+
+// The arrays of a batch for a trial, on the heap unless there is a memory for them.
 class Arrays {
  public:
-  Arrays(const Trial& trial, const Inputs& first, const Layout& layout, Memory& memory);
+  Arrays(const Trial& trial, const Inputs& first, const Layout& layout = {}, Memory* memory = nullptr);
 
   std::int32_t initialise(const Inputs& in);
   // From the state that the last call left.
@@ -61,8 +85,7 @@ class Arrays {
   Results evaluate_with(const Instance& instance, const Inputs& in);
   void set_state(const std::vector<double>& state);  // of each node in turn
   std::vector<double> state();
-  std::vector<double> impulses();  // with the moments after them
-  std::vector<double> amounts();   // all of them, one after another
+  std::vector<double> written();  // all outputs, one after another
   // The output that the last evaluate wrote outside the nodes of the batch; null where there is none.
   const char* written_beside();
   ilaw_batch& batch() { return batch_; }
@@ -70,36 +93,45 @@ class Arrays {
 
  private:
   Field made(const char* name, std::size_t width, Use use, ilaw_number_type numbers);
-  void make_list(Memory& memory);
-  void make_inputs(const Inputs& first, Memory& memory);
-  void make_outputs(Memory& memory);
-  void describe();
+  template <class Number>
+  Number* taken(const char* name, std::size_t count, Use use);
+  void make_list();
+  void make_inputs(const Inputs& first);
+  void make_outputs();
   void load_one(Field& field, const std::vector<double>& values);
+  template <class Visit>
+  void for_outputs(Visit visit);
   std::vector<double> take(const Field& field) const;
   Results results(std::int32_t code);
   std::size_t node(std::size_t k) const { return layout_.nodes[k]; }
+  Field& state_out() { return outputs_[state_place]; }
+  std::size_t status_size() const { return (room_ - 1) * status_stride_ + 1; }
 
   const Trial& trial_;
   Layout layout_;
+  Heap own_memory_;
   Memory& memory_;
-  std::size_t room_, made_ = 0;
+  std::size_t room_, made_ = 0, status_stride_ = 1;
   std::vector<std::size_t> places_;  // in the arrays, of each node of the batch
   ilaw_batch batch_{};
   ilaw_report report_{};
   std::array<Field, node_arrays.size()> inputs_;
-  Field state_in_, state_out_, impulse_, velocity_, energy_, moment_, spin_;
+  std::array<Field, output_arrays.size()> outputs_;
+  Field state_in_;
   std::vector<Field> per_node_, amounts_;
-  ilaw_input* per_node_inputs_ = nullptr;
-  ilaw_output* amount_outputs_ = nullptr;
-  std::uint8_t* status_ = nullptr;
-  std::int32_t* index_ = nullptr;
-  std::int64_t* index64_ = nullptr;
-  std::size_t status_stride_ = 1;
+};
+
+// With its first state.
+struct Started : Arrays {
+  Started(const Trial& trial, const Inputs& first, const Layout& layout = {}, Memory* memory = nullptr)
+      : Arrays(trial, first, layout, memory) {
+    initialise(first);
+  }
 };
 
 // Results of all steps, from the first state on.
-std::vector<Results> run(const Trial& trial, const Script& script, const Layout& layout = {});
-std::vector<Results> run(const Trial& trial, const Script& script, const Layout& layout, Memory& memory);
+std::vector<Results> run(const Trial& trial, const Script& script, const Layout& layout = {},
+                         Memory* memory = nullptr);
 
 // Forgets the states of the trial before, which findings name.
 void forget_states();
@@ -128,7 +160,6 @@ void expect_nothing(const Trial& trial, const Inputs& in, const Results& found, 
                     const std::string& how);
 // Throws the finding where an impulse or a moment is not finite, or overflows floats in sums.
 void expect_finite(const Trial& trial, const Inputs& in, const Results& found);
-std::string text_of(double value);
 std::string text_of(const Vector& a, std::size_t dimension);
 
 }  // namespace ilaw::check

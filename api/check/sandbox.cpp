@@ -59,16 +59,21 @@ DescribeAddress describe_address = nullptr;
 
 // Cuts what is too long; for a signal handler too.
 template <std::size_t N>
-void put(std::array<char, N>& room, const char* text) {
-  std::size_t at = 0;
-  for (; text[at] != '\0' && at + 1 < N; ++at) room[at] = text[at];
-  room[at] = '\0';
-}
-template <std::size_t N>
 void append(std::array<char, N>& room, const char* text) {
   std::size_t at = std::strlen(room.data());
   for (; *text != '\0' && at + 1 < N; ++at) room[at] = *text++;
   room[at] = '\0';
+}
+template <std::size_t N>
+void put(std::array<char, N>& room, const char* text) {
+  room[0] = '\0';
+  append(room, text);
+}
+
+// The library may have written over the zero at its end.
+template <std::size_t N>
+std::string text_in(const std::array<char, N>& room) {
+  return {room.begin(), std::find(room.begin(), room.end(), '\0')};
 }
 
 bool was_write(const void* context) {
@@ -258,9 +263,10 @@ Ending ending_of(const Shared& left, Waiting waiting, int status, double seconds
   ending.returned = in_time && left.returned;
   ending.result.assign(left.result.data(), std::min(left.size, most_result));
   if (!ending.returned)
-    ending.how = in_time && left.what[0] != '\0' ? left.what.data() : how_it_ended(in_time, status, seconds);
-  ending.call = left.call.data();
-  ending.setting = left.setting.data();
+    ending.how =
+        in_time && left.what[0] != '\0' ? text_in(left.what) : how_it_ended(in_time, status, seconds);
+  ending.call = text_in(left.call);
+  ending.setting = text_in(left.setting);
   return ending;
 }
 

@@ -11,51 +11,50 @@
 namespace ilaw::check {
 namespace {
 
-void expect_unserved(const Trial& trial, const ilaw_setup& setup, const std::string& what) {
-  set_setting(what + "; " + text_of(trial.values));
+// create refuses the setup of a trial with a change.
+template <class Change>
+void expect_unserved(const Trial& trial, const std::string& what, Change change) {
+  const SetupStruct given(trial.setup, trial.values);
+  ilaw_setup setup = given.given;
+  change(setup);
+  set_setting(joined(what, "; ", text_of(trial.values)));
   Refusal refusal{};
-  if (create(trial.law, setup, refusal)) fail(trial, "create accepted " + what, "a refusal");
+  if (create(trial.law, setup, refusal)) fail(trial, joined("create accepted ", what), "a refusal");
   if (refusal.code != ILAW_UNSUPPORTED)
-    fail(trial, "create refused " + what + " with code " + std::to_string(refusal.code),
-         "ILAW_UNSUPPORTED (-3)");
+    fail(trial, joined("create refused ", what, " with code ", refusal.code), "ILAW_UNSUPPORTED (-3)");
 }
+
+bool is_single(std::uint32_t mask) { return mask != 0 && (mask & (mask - 1)) == 0; }
 
 void setup_unserved(const Subject& subject) {
   const Trial trial = any_trial(subject);
-  const SetupStruct given(trial.setup, trial.values);
   for (std::uint32_t d = 0; d <= 5; ++d) {
     const bool has_form = d == 3 || !trial.setup.spins();
-    if (d >= 1 && d <= 3 && has_form && (subject.law.dimensions & (1U << d))) continue;
-    ilaw_setup setup = given.given;
-    setup.dimension = d;
-    expect_unserved(trial, setup, "dimension " + std::to_string(d));
+    if (!has_form || d < 1 || d > 3 || !(subject.law.dimensions & (1U << d)))
+      expect_unserved(trial, joined("dimension ", d), [d](ilaw_setup& setup) { setup.dimension = d; });
   }
-  for (const std::uint32_t form : {0U, 1U, 2U, 3U, 4U, 8U, 16U}) {
-    const bool single = form != 0 && (form & (form - 1)) == 0;
-    if (single && (subject.law.delassus_forms & form)) continue;
-    ilaw_setup setup = given.given;
-    setup.delassus_form = form;
-    expect_unserved(trial, setup, "form " + std::to_string(form) + " of H");
-  }
+  for (const std::uint32_t form : {0U, 1U, 2U, 3U, 4U, 8U, 16U})
+    if (!is_single(form) || !(subject.law.delassus_forms & form))
+      expect_unserved(trial, joined("form ", form, " of H"),
+                      [form](ilaw_setup& setup) { setup.delassus_form = form; });
 }
 
 // Each exactly one entry of the law's mask: none, several and unknown ones are refused.
-void setup_choice(const Subject& subject, std::uint32_t ilaw_setup::*member, std::uint32_t served,
-                  const char* what) {
+Judge refuses_choices(const char* what, std::uint32_t ilaw_setup::*member, std::uint32_t ilaw_law::*served) {
+  return {Needs::instance, [=](const Subject& subject) {
+            const Trial trial = any_trial(subject);
+            for (const std::uint32_t choice : {0U, 1U, 2U, 3U, 4U, 7U, 1U << 31})
+              if (!is_single(choice) || !(choice & subject.law.*served & 3U))
+                expect_unserved(trial, joined(what, " ", choice),
+                                [=](ilaw_setup& setup) { setup.*member = choice; });
+          }};
+}
+
+void setup_flags(const Subject& subject) {
   const Trial trial = any_trial(subject);
-  const SetupStruct given(trial.setup, trial.values);
-  for (const std::uint32_t choice : {0U, 1U, 2U, 3U, 4U, 7U, 1U << 31}) {
-    if ((choice & (choice - 1)) == 0 && (choice & served & 3U)) continue;
-    ilaw_setup setup = given.given;
-    setup.*member = choice;
-    expect_unserved(trial, setup, std::string(what) + " " + std::to_string(choice));
-  }
-}
-void setup_frame(const Subject& subject) {
-  setup_choice(subject, &ilaw_setup::frame, subject.law.frames, "frame");
-}
-void setup_numbers(const Subject& subject) {
-  setup_choice(subject, &ilaw_setup::numbers, subject.law.numbers, "number type");
+  for (const int bit : {0, 31, 63})
+    expect_unserved(trial, joined("bit ", bit, " of flags"),
+                    [bit](ilaw_setup& setup) { setup.flags = std::uint64_t{1} << bit; });
 }
 
 void create_id(const Subject& subject) {
@@ -64,24 +63,13 @@ void create_id(const Subject& subject) {
   for (const std::string& id :
        {std::string("nobody_has_this"), std::string(), std::string(subject.law.id) + "_"}) {
     ilaw_instance* made = nullptr;
-    set_setting(trial.text() + "; id '" + id + "'");
+    set_setting(joined(trial.text(), "; id '", id, "'"));
     calling("create");
     const std::int32_t code = subject.law.create(id.c_str(), &given.given, &made, nullptr, 0);
     if (code >= 0 || made)
       fail(trial,
-           "create returned " + std::to_string(code) + (made ? " and an instance" : "") + " for the id '" +
-               id + "'",
+           joined("create returned ", code, (made ? " and an instance" : ""), " for the id '", id, "'"),
            "a refusal: the library has no such law");
-  }
-}
-
-void setup_flags(const Subject& subject) {
-  const Trial trial = any_trial(subject);
-  const SetupStruct given(trial.setup, trial.values);
-  for (const int bit : {0, 31, 63}) {
-    ilaw_setup setup = given.given;
-    setup.flags = std::uint64_t{1} << bit;
-    expect_unserved(trial, setup, "bit " + std::to_string(bit) + " of flags");
   }
 }
 
@@ -97,8 +85,7 @@ void sizes_short(const Subject& subject) {
   const Trial trial = any_trial(subject);
   const auto expect = [&](std::int32_t code, const std::string& what) {
     if (code != ILAW_INVALID_ARGUMENT)
-      fail(trial,
-           what + " returned " + std::to_string(code) + " for a struct smaller than that of version 1.0",
+      fail(trial, joined(what, " returned ", code, " for a struct smaller than that of version 1.0"),
            "ILAW_INVALID_ARGUMENT (-1)");
   };
   SetupStruct given(trial.setup, trial.values);
@@ -118,9 +105,7 @@ void sizes_short(const Subject& subject) {
   expect(trial.law.info(trial.instance.get(), &info), "info");
   Draw draw(subject.seed);
   const Script script = draw_script(trial, draw, {2, 1});
-  Heap heap;
-  Arrays arrays(trial, script[0], {}, heap);
-  arrays.initialise(script[0]);
+  Started arrays(trial, script[0]);
   ilaw_batch batch = arrays.batch();
   batch.struct_size = static_cast<std::uint32_t>(ILAW_BATCH_SIZE_1_0) - 1;
   expect(trial.instance.evaluate(batch, nullptr), "evaluate");
@@ -149,47 +134,41 @@ void sizes_long(const Subject& subject) {
     Longer<ilaw_setup> setup(given.given);
     const Script script = draw_script(trial, draw, {3, 1});
     if (const std::int32_t code = code_of(trial, &setup.known); code != ILAW_OK)
-      fail(trial, "create returned " + std::to_string(code) + " for a longer setup", "ILAW_OK");
+      fail(trial, joined("create returned ", code, " for a longer setup"), "ILAW_OK");
     Longer<ilaw_instance_info> info(ilaw_instance_info{});
     calling("info");
     if (trial.law.info(trial.instance.get(), &info.known) != ILAW_OK || !(knows_more || info.is_untouched()))
       fail(trial, "info wrote beyond the known struct, or refused a longer one", "members that it knows");
-    Heap heap;
-    Arrays arrays(trial, script[0], {}, heap);
-    arrays.initialise(script[0]);
+    Started arrays(trial, script[0]);
     arrays.evaluate(script[0]);
     Longer<ilaw_batch> batch(arrays.batch());
     ilaw_report blank{};
     Longer<ilaw_report> report(blank);
     const std::int32_t code = trial.instance.evaluate(batch.known, &report.known);
     if (code < 0 || !(knows_more || report.is_untouched()))
-      fail(trial, "evaluate returned " + std::to_string(code) + ", or wrote beyond the known report",
+      fail(trial, joined("evaluate returned ", code, ", or wrote beyond the known report"),
            "ILAW_OK for structs of a later version");
     return true;
   });
 }
 
 // An instance must give the same while the setup exists and after it has become rubbish.
-void setup_copied(const Subject& subject) {
-  for_trials(subject, [](const Trial& trial, Draw& draw) {
-    auto given = std::make_unique<SetupStruct>(trial.setup, trial.values);
-    Refusal refusal{};
-    const std::optional<Instance> made = create(trial.law, given->given, refusal);
-    if (!made) return false;
-    const Script script = draw_script(trial, draw);
-    const auto results = [&] {
-      Heap heap;
-      Arrays arrays(trial, script[0], {}, heap);
-      arrays.initialise(script[0]);
-      std::vector<Results> all;
-      for (const Inputs& in : script) all.push_back(arrays.evaluate_with(*made, in));
-      return all;
-    };
-    const std::vector<Results> expected = results();
-    given.reset();
-    expect_same(trial, script, expected, results(), "once the setup was gone");
-    return true;
-  });
+bool setup_copied(const Trial& trial, Draw& draw) {
+  auto given = std::make_unique<SetupStruct>(trial.setup, trial.values);
+  Refusal refusal{};
+  const std::optional<Instance> made = create(trial.law, given->given, refusal);
+  if (!made) return false;
+  const Script script = draw_script(trial, draw);
+  const auto results = [&] {
+    Started arrays(trial, script[0]);
+    std::vector<Results> all;
+    for (const Inputs& in : script) all.push_back(arrays.evaluate_with(*made, in));
+    return all;
+  };
+  const std::vector<Results> expected = results();
+  given.reset();
+  expect_same(trial, script, expected, results(), "once the setup was gone");
+  return true;
 }
 
 bool is_line(const char* text) {
@@ -202,7 +181,7 @@ void refusal_message(const Subject& subject) {
   const Trial trial = any_trial(subject);
   const Values values = with(trial.values, {"nobody_has_this", ILAW_KIND_VALUE_NUMBER, 1.0});
   const SetupStruct given(trial.setup, values);
-  set_setting(text_of(trial.setup) + "; " + text_of(values));
+  set_setting(joined(text_of(trial.setup), "; ", text_of(values)));
   for (const std::size_t size : {std::size_t{512}, std::size_t{8}, std::size_t{1}, std::size_t{0}}) {
     std::array<char, 513> text;
     text.fill('#');
@@ -215,11 +194,11 @@ void refusal_message(const Subject& subject) {
     const auto beyond = std::find_if(text.begin() + static_cast<std::ptrdiff_t>(size), text.end(),
                                      [](char c) { return c != '#'; });
     if (beyond != text.end())
-      fail(trial, "create wrote beyond the " + std::to_string(size) + " bytes of the message", "within them");
+      fail(trial, joined("create wrote beyond the ", size, " bytes of the message"), "within them");
     if (size > 0 && !std::memchr(text.data(), 0, size))
-      fail(trial, "the message has no zero at its end", "one within " + std::to_string(size) + " bytes");
+      fail(trial, "the message has no zero at its end", joined("one within ", size, " bytes"));
     if (size == 512 && (text[0] == '\0' || !is_line(text.data())))
-      fail(trial, "the message is \"" + std::string(text.data()) + "\"",
+      fail(trial, joined("the message is \"", text.data(), "\""),
            "one line that says which parameter, its value and what is allowed");
   }
 }
@@ -230,23 +209,23 @@ std::vector<Rule> setup_rules() {
   return {
       {"setup-unserved",
        "A dimension or form of H that the law does not serve is refused, spins in 1D and 2D among them.",
-       "ilaw.h, ilaw_setup", Needs::instance, setup_unserved},
+       "ilaw.h, ilaw_setup", needing(Needs::instance, setup_unserved)},
       {"setup-frame", "A frame that is not exactly one entry of the law's mask is refused.",
-       "ilaw.h, ilaw_setup", Needs::instance, setup_frame},
+       "ilaw.h, ilaw_setup", refuses_choices("frame", &ilaw_setup::frame, &ilaw_law::frames)},
       {"setup-numbers", "A number type that is not exactly one entry of the law's mask is refused.",
-       "ilaw.h, ilaw_setup", Needs::instance, setup_numbers},
+       "ilaw.h, ilaw_setup", refuses_choices("number type", &ilaw_setup::numbers, &ilaw_law::numbers)},
       {"create-id", "create makes no instance of a law that the library does not have.",
-       "ilaw.h, ilaw_law.create", Needs::instance, create_id},
+       "ilaw.h, ilaw_law.create", needing(Needs::instance, create_id)},
       {"setup-flags", "A bit of the setup's flags that the law does not know is refused.", "ilaw.h, Growth",
-       Needs::instance, setup_flags},
+       needing(Needs::instance, setup_flags)},
       {"sizes-short", "A struct that is smaller than that of version 1.0 is refused.",
-       "abi.md, How ABI 1 grows", Needs::instance, sizes_short},
+       "abi.md, How ABI 1 grows", needing(Needs::instance, sizes_short)},
       {"sizes-long", "Structs of later minor versions are served; nothing is written beyond what is known.",
-       "abi.md, How ABI 1 grows", Needs::motion, sizes_long},
-      {"setup-copied", "Nothing of the setup need outlive create.", "abi.md, ilaw_setup", Needs::motion,
-       setup_copied},
+       "abi.md, How ABI 1 grows", needing(Needs::motion, sizes_long)},
+      {"setup-copied", "Nothing of the setup need outlive create.", "abi.md, ilaw_setup",
+       on_trials(setup_copied)},
       {"refusal-message", "A refusal leaves no instance, and a message of one line within its bytes.",
-       "ilaw.h, ilaw_law.create", Needs::instance, refusal_message}};
+       "ilaw.h, ilaw_law.create", needing(Needs::instance, refusal_message)}};
 }
 
 }  // namespace ilaw::check

@@ -67,9 +67,7 @@ double Shake::rounding_of(double size_of_vector) {
 }
 
 std::vector<Results> run_shaken(const Trial& trial, const Script& script, Draw& draw) {
-  Heap heap;
-  Arrays arrays(trial, script[0], {}, heap);
-  arrays.initialise(script[0]);
+  Started arrays(trial, script[0]);
   Shake shake(trial, draw);
   std::vector<Results> results;
   for (const Inputs& in : script) {

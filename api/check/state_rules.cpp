@@ -50,71 +50,52 @@ void expect_left_alone(const Trial& trial, const Inputs& in, std::size_t i, cons
   if (!same_bits(state, found.state, i, trial.info.state_size))
     fail(trial, in, i, "out of reach, its state changed", "the same bits of state");
   if (!found.status.empty() && found.status[i] != ILAW_FREE && found.status[i] != ILAW_BAD_INPUT)
-    fail(trial, in, i, "out of reach, status " + std::to_string(found.status[i]), "ILAW_FREE (0)");
+    fail(trial, in, i, joined("out of reach, status ", found.status[i]), "ILAW_FREE (0)");
 }
 
-void skip_fresh(const Subject& subject) {
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        if (!trial.permits(ILAW_MAY_SKIP_FRESH) || !trial.reads(ILAW_INPUT_GAP)) return false;
-        Script script = draw_script(trial, draw, {40, 3, true}, true);
-        Heap heap;
-        Arrays arrays(trial, script[0], {}, heap);
-        for (Inputs& in : script) {
-          if (&in != &script[0]) draw_borderline(in, draw);
-          in.round_to(trial.setup);
-          arrays.initialise(in);
-          const std::vector<double> state = arrays.state();
-          const Results found = arrays.evaluate(in);
-          for (std::size_t i = 0; i < in.count; ++i)
-            if (in.is_out_of_reach(i)) expect_left_alone(trial, in, i, state, found);
-        }
-        return true;
-      },
-      "the law does not permit it");
+bool skip_fresh(const Trial& trial, Draw& draw) {
+  if (!trial.permits(ILAW_MAY_SKIP_FRESH) || !trial.reads(ILAW_INPUT_GAP)) return false;
+  Script script = draw_script(trial, draw, {40, 3, true}, true);
+  Arrays arrays(trial, script[0]);
+  for (Inputs& in : script) {
+    if (&in != &script[0]) draw_borderline(in, draw);
+    in.round_to(trial.setup);
+    arrays.initialise(in);
+    const std::vector<double> state = arrays.state();
+    const Results found = arrays.evaluate(in);
+    for (std::size_t i = 0; i < in.count; ++i)
+      if (in.is_out_of_reach(i)) expect_left_alone(trial, in, i, state, found);
+  }
+  return true;
 }
 
-void skip_free(const Subject& subject) {
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        if (!trial.permits(ILAW_MAY_SKIP_FREE) || !trial.writes(ILAW_OUTPUT_STATUS) ||
-            !trial.reads(ILAW_INPUT_GAP))
-          return false;
-        Script script = draw_script(trial, draw, {30, 16, true}, true);
-        Heap heap;
-        Arrays arrays(trial, script[0], {}, heap);
-        arrays.initialise(script[0]);
-        for (std::size_t k = 0; k + 1 < script.size(); k += 2) {
-          const Results before = arrays.evaluate(script[k]);
-          Inputs& in = script[k + 1];
-          draw_borderline(in, draw);
-          in.round_to(trial.setup);
-          const Results found = arrays.evaluate(in);
-          for (std::size_t i = 0; i < in.count; ++i)
-            if (before.status[i] == ILAW_FREE && in.is_out_of_reach(i))
-              expect_left_alone(trial, in, i, before.state, found);
-        }
-        return true;
-      },
-      "the law does not permit it");
+bool skip_free(const Trial& trial, Draw& draw) {
+  if (!trial.permits(ILAW_MAY_SKIP_FREE) || !trial.writes(ILAW_OUTPUT_STATUS) || !trial.reads(ILAW_INPUT_GAP))
+    return false;
+  Script script = draw_script(trial, draw, {30, 16, true}, true);
+  Started arrays(trial, script[0]);
+  for (std::size_t k = 0; k + 1 < script.size(); k += 2) {
+    const Results before = arrays.evaluate(script[k]);
+    Inputs& in = script[k + 1];
+    draw_borderline(in, draw);
+    in.round_to(trial.setup);
+    const Results found = arrays.evaluate(in);
+    for (std::size_t i = 0; i < in.count; ++i)
+      if (before.status[i] == ILAW_FREE && in.is_out_of_reach(i))
+        expect_left_alone(trial, in, i, before.state, found);
+  }
+  return true;
 }
 
-void smooth_absent(const Subject& subject) {
-  for_trials_per_node_too(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        if (!trial.reads(ILAW_INPUT_V_SMOOTH)) return false;
-        Script with = draw_script(trial, draw), without = with;
-        for (std::size_t k = 0; k < with.size(); ++k) {
-          with[k].v_smooth = with[k].v_free;
-          without[k].v_smooth.clear();
-        }
-        expect_same(trial, with, run(trial, without), run(trial, with), "with v_free as v_smooth, too");
-        return true;
-      },
-      "the law does not ask for v_smooth");
+bool smooth_absent(const Trial& trial, Draw& draw) {
+  if (!trial.reads(ILAW_INPUT_V_SMOOTH)) return false;
+  Script with = draw_script(trial, draw), without = with;
+  for (std::size_t k = 0; k < with.size(); ++k) {
+    with[k].v_smooth = with[k].v_free;
+    without[k].v_smooth.clear();
+  }
+  expect_same(trial, with, run(trial, without), run(trial, with), "with v_free as v_smooth, too");
+  return true;
 }
 
 // Whether an entry of the state is one of a history: numbers that the law may not read again.
@@ -137,14 +118,13 @@ void expect_contained(const Trial& trial, const Inputs& in, Arrays& arrays, cons
   arrays.set_state(foreign);
   const Results found = arrays.evaluate(in);
   const auto say = [&](std::size_t at, const std::string& seen, const std::string& allowed) {
-    fail(trial, in, at, "state_in[" + std::to_string(entry) + "] of node 2 = " + text_of(value) + ": " + seen,
-         allowed);
+    fail(trial, in, at, joined("state_in[", entry, "] of node 2 = ", value, ": ", seen), allowed);
   };
   for (std::size_t i = 0; i < in.count; ++i) {
     if (i == node) continue;
     if (!same_bits(good.impulse, found.impulse, i, d) || !same_bits(good.state, found.state, i, size) ||
         !same_bits(good.moment, found.moment, i, moment_width))
-      say(i, "node " + std::to_string(i) + " changed", "as ever at the other nodes");
+      say(i, joined("node ", i, " changed"), "as ever at the other nodes");
   }
   for (std::size_t c = 0; c < d; ++c)
     if (!std::isfinite(found.impulse[node * d + c]))
@@ -154,7 +134,7 @@ void expect_contained(const Trial& trial, const Inputs& in, Arrays& arrays, cons
     if (!std::isfinite(component)) say(node, "a moment that is not finite", "a finite moment");
   const bool refused = found.code == ILAW_BAD_NODES;
   if (!std::isfinite(value) && !refused && !is_history(trial, entry))
-    say(node, "code " + std::to_string(found.code), "ILAW_BAD_NODES (1)");
+    say(node, joined("code ", found.code), "ILAW_BAD_NODES (1)");
   if (!std::isfinite(value) && !refused &&
       !(same_bits(good.impulse, found.impulse, node, d) &&
         same_bits(good.moment, found.moment, node, moment_width)))
@@ -167,27 +147,20 @@ void expect_contained(const Trial& trial, const Inputs& in, Arrays& arrays, cons
     say(node, "bad input with another state", "state_out = state_in");
 }
 
-void foreign_state(const Subject& subject) {
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        const std::size_t size = trial.info.state_size;
-        if (size == 0) return false;
-        const Script script = draw_script(trial, draw, {5, 4}, true);
-        Heap heap;
-        Arrays arrays(trial, script[0], {}, heap);
-        arrays.initialise(script[0]);
-        for (std::size_t k = 0; k < 3; ++k) arrays.evaluate(script[k]);
-        const std::vector<double> state = arrays.state();
-        const Results good = arrays.evaluate(script[3]);
-        if (good.code != ILAW_OK) return false;
-        for (std::size_t k = 0; k < std::min<std::size_t>(size, 24); ++k)
-          for (const double value :
-               {std::nan(""), infinity, -infinity, 1e300, -1e300, 1e18, 4096.0, -17.0, 0.5, 1e-310})
-            expect_contained(trial, script[3], arrays, state, good, k, value);
-        return true;
-      },
-      "the law has no state");
+bool foreign_state(const Trial& trial, Draw& draw) {
+  const std::size_t size = trial.info.state_size;
+  if (size == 0) return false;
+  const Script script = draw_script(trial, draw, {5, 4}, true);
+  Started arrays(trial, script[0]);
+  for (std::size_t k = 0; k < 3; ++k) arrays.evaluate(script[k]);
+  const std::vector<double> state = arrays.state();
+  const Results good = arrays.evaluate(script[3]);
+  if (good.code != ILAW_OK) return false;
+  for (std::size_t k = 0; k < std::min<std::size_t>(size, 24); ++k)
+    for (const double value :
+         {std::nan(""), infinity, -infinity, 1e300, -1e300, 1e18, 4096.0, -17.0, 0.5, 1e-310})
+      expect_contained(trial, script[3], arrays, state, good, k, value);
+  return true;
 }
 
 }  // namespace
@@ -197,17 +170,18 @@ std::vector<Rule> state_rules() {
       {"skip-fresh",
        "With ILAW_MAY_SKIP_FRESH a fresh node out of reach gets r = 0, no energy, no amounts, and keeps its "
        "state, bit for bit.",
-       "ilaw.h, ILAW_MAY_SKIP_FRESH", Needs::motion, skip_fresh},
+       "ilaw.h, ILAW_MAY_SKIP_FRESH", on_trials(skip_fresh, "the law does not permit it")},
       {"skip-free",
        "With ILAW_MAY_SKIP_FREE a node that was free gets r = 0, no energy, no amounts, and keeps its state "
        "out of reach.",
-       "ilaw.h, ILAW_MAY_SKIP_FREE", Needs::motion, skip_free},
+       "ilaw.h, ILAW_MAY_SKIP_FREE", on_trials(skip_free, "the law does not permit it")},
       {"smooth-absent", "Without v_smooth the law gives the bits that it gives with v_free as v_smooth.",
-       "ilaw.h, ilaw_batch.v_smooth", Needs::motion, smooth_absent},
+       "ilaw.h, ilaw_batch.v_smooth",
+       on_trials_per_node_too(smooth_absent, "the law does not ask for v_smooth")},
       {"foreign-state",
        "A state that the law cannot have written is bad input, or does no harm; NaN and infinity "
        "are bad input, in a history in the step that reads them.",
-       "abi.md, State", Needs::motion, foreign_state}};
+       "abi.md, State", on_trials(foreign_state, "the law has no state")}};
 }
 
 }  // namespace ilaw::check

@@ -42,7 +42,7 @@ bool are_alike(const Trial& trial, const Inputs& in, std::size_t i, const Action
   const auto text = [&](const Action& a) {
     return text_of(a.impulse, in.dimension) + (in.spins() ? ", moment " + text_of(a.moment, 3) : "");
   };
-  fail(trial, in, i, how + ": impulse " + text(found) + ", brought back", text(expected));
+  fail(trial, in, i, joined(how, ": impulse ", text(found), ", brought back"), text(expected));
 }
 
 // Whether another form or frame refuses an H that is isotropic or transverse but for the rounding of its
@@ -62,21 +62,23 @@ void leave_out_edges(const Trial& trial, const Inputs& in, const Results& plain,
 
 constexpr int shakes = 3;
 
+template <class Change>
+Script each_of(const Script& script, Change change) {
+  Script changed;
+  for (const Inputs& in : script) changed.push_back(change(in));
+  return changed;
+}
+
 template <class Back>
 void expect_image(const Trial& trial, const Script& script, const std::vector<Results>& plain,
-                  const std::vector<Results>& image, const char* how, Back back,
-                  const std::vector<std::vector<Results>>& shaken = {}) {
-  std::vector<bool> is_judged(script[0].count, true);
-  for (std::size_t k = 0; k < script.size(); ++k) {
-    for (const std::vector<Results>& of : shaken)
-      leave_out_edges(trial, script[k], plain[k], of[k], is_judged);
+                  const std::vector<Results>& image, const char* how, Back back) {
+  for (std::size_t k = 0; k < script.size(); ++k)
     for (std::size_t i = 0; i < script[k].count; ++i) {
       const Action expected = action_at(script[k], plain[k], i),
                    found = back(i, action_at(script[k], image[k], i));
-      if (is_judged[i] && !are_alike(trial, script[k], i, expected, found))
-        fail_image(trial, script[k], i, std::string(how) + ", step " + std::to_string(k), expected, found);
+      if (!are_alike(trial, script[k], i, expected, found))
+        fail_image(trial, script[k], i, joined(how, ", step ", k), expected, found);
     }
-  }
 }
 
 // Each step of the other trial from the state of the first: what rounding makes of a memory is not the
@@ -84,10 +86,7 @@ void expect_image(const Trial& trial, const Script& script, const std::vector<Re
 template <class State, class Back>
 void expect_steps_alike(const Trial& trial, const Script& script, const Trial& other,
                         const Script& other_script, const std::string& how, State state, Back back) {
-  Heap heap;
-  Arrays arrays(trial, script[0], {}, heap), others(other, other_script[0], {}, heap),
-      shaken(trial, script[0], {}, heap);
-  arrays.initialise(script[0]);
+  Started arrays(trial, script[0]), others(other, other_script[0]), shaken(trial, script[0]);
   Draw draw(script.size());
   Shake shake(trial, draw);
   for (std::size_t k = 0; k < script.size(); ++k) {
@@ -111,31 +110,23 @@ std::vector<double> the_same(std::vector<double> state) { return state; }
 Action turned(const Matrix& by, const Action& a) { return {times(by, a.impulse), times(by, a.moment)}; }
 
 // A scalar H is diagonal, transverse and full, a diagonal and a transverse one are full. Spins have one form.
-void form_agreement(const Subject& subject) {
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        if (trial.setup.form == ILAW_DELASSUS_FULL || trial.setup.spins()) return false;
-        bool judged = false;
-        const Script script = draw_script(trial, draw);
-        for (const std::uint32_t form :
-             {ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL, ILAW_DELASSUS_TRANSVERSE}) {
-          if (form != ILAW_DELASSUS_FULL && trial.setup.form != ILAW_DELASSUS_SCALAR) continue;
-          Setup setup = trial.setup;
-          setup.form = form;
-          if (!(trial.law.delassus_forms & form) || !create(trial.law, setup, trial.values)) continue;
-          const Trial other(trial.law, setup, trial.values);
-          if (other.info.state_size != trial.info.state_size) continue;
-          Script other_script;
-          for (const Inputs& in : script) other_script.push_back(in_form(in, setup));
-          expect_steps_alike(trial, script, other, other_script,
-                             "with the same H in form " + std::to_string(form), the_same,
-                             [](std::size_t, const Action& a) { return a; });
-          judged = true;
-        }
-        return judged;
-      },
-      "the law serves one form of H alone");
+bool form_agreement(const Trial& trial, Draw& draw) {
+  if (trial.setup.form == ILAW_DELASSUS_FULL || trial.setup.spins()) return false;
+  bool judged = false;
+  const Script script = draw_script(trial, draw);
+  for (const std::uint32_t form : {ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL, ILAW_DELASSUS_TRANSVERSE}) {
+    if (form != ILAW_DELASSUS_FULL && trial.setup.form != ILAW_DELASSUS_SCALAR) continue;
+    Setup setup = trial.setup;
+    setup.form = form;
+    if (!(trial.law.delassus_forms & form) || !create(trial.law, setup, trial.values)) continue;
+    const Trial other(trial.law, setup, trial.values);
+    if (other.info.state_size != trial.info.state_size) continue;
+    const Script other_script = each_of(script, [&](const Inputs& in) { return in_form(in, setup); });
+    expect_steps_alike(trial, script, other, other_script, "with the same H in form " + std::to_string(form),
+                       the_same, [](std::size_t, const Action& a) { return a; });
+    judged = true;
+  }
+  return judged;
 }
 
 // With tangents a state is in local components, so it is the same in any axes.
@@ -153,6 +144,11 @@ Setup host_of(Setup own, bool has_tangent) {
   return own;
 }
 
+bool serves(const Trial& trial, const Setup& host) {
+  return (trial.law.delassus_forms & host.form) && (trial.law.frames & host.frame) &&
+         create(trial.law, host, trial.values);
+}
+
 std::vector<Matrix> draw_axes_of(const Script& script, Draw& draw) {
   std::vector<Matrix> axes;
   for (std::size_t i = 0; i < script[0].count; ++i) axes.push_back(draw_axes(script[0].dimension, draw));
@@ -162,39 +158,25 @@ std::vector<Matrix> draw_axes_of(const Script& script, Draw& draw) {
 // Whether the law serves the frame, and has the same state there.
 bool expect_indifferent(const Trial& trial, const Setup& host, const Script& script,
                         const std::vector<Matrix>& axes) {
-  if (!(trial.law.delassus_forms & host.form) || !(trial.law.frames & ILAW_FRAME_GLOBAL) ||
-      !create(trial.law, host, trial.values))
-    return false;
+  if (!serves(trial, host)) return false;
   const Trial in_host(trial.law, host, trial.values);
   if (keeps_axes(in_host) || in_host.info.state_size != trial.info.state_size) return false;
-  Script host_script;
-  for (const Inputs& in : script) {
-    host_script.push_back(turned(in, axes));
-    if (!host.has_tangent) host_script.back().tangent.clear();
-  }
+  const Script host_script = each_of(script, [&](const Inputs& in) {
+    Inputs in_axes = turned(in, axes);
+    if (!host.has_tangent) in_axes.tangent.clear();
+    return in_axes;
+  });
   expect_steps_alike(trial, script, in_host, host_script, "in axes of the host", the_same,
                      [&](std::size_t i, const Action& a) { return turned(axes[i], a); });
   return true;
 }
 
-void frame_indifference(const Subject& subject) {
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        const Setup& own = trial.setup;
-        if (own.global()) return false;
-        const Setup host = host_of(own, own.dimension == 3);
-        const Script script = draw_script(trial, draw);
-        return expect_indifferent(trial, host, script, draw_axes_of(script, draw));
-      },
-      "the law serves one frame alone");
-}
-
-std::vector<std::vector<Results>> runs_shaken(const Trial& trial, const Script& script, Draw& draw) {
-  std::vector<std::vector<Results>> runs;
-  runs.reserve(shakes);
-  for (int n = 0; n < shakes; ++n) runs.push_back(run_shaken(trial, script, draw));
-  return runs;
+bool frame_indifference(const Trial& trial, Draw& draw) {
+  const Setup& own = trial.setup;
+  if (own.global()) return false;
+  const Setup host = host_of(own, own.dimension == 3);
+  const Script script = draw_script(trial, draw);
+  return expect_indifferent(trial, host, script, draw_axes_of(script, draw));
 }
 
 // The script in axes of the host that differ from step to step, without tangents.
@@ -223,7 +205,8 @@ void expect_carried(const Trial& trial, const Trial& in_host, Draw& draw) {
   const std::vector<Results> plain = run(trial, script),
                              unturned = run(in_host, in_axes(script, still, in_host.setup)),
                              found = run(in_host, in_axes(script, axes, in_host.setup));
-  const std::vector<std::vector<Results>> shaken = runs_shaken(trial, script, draw);
+  std::vector<std::vector<Results>> shaken;
+  for (int n = 0; n < shakes; ++n) shaken.push_back(run_shaken(trial, script, draw));
   std::vector<bool> is_judged(count, true);
   for (std::size_t k = 0; k < script.size(); ++k) {
     for (const std::vector<Results>& of : shaken)
@@ -242,20 +225,13 @@ void expect_carried(const Trial& trial, const Trial& in_host, Draw& draw) {
   }
 }
 
-void history_carried(const Subject& subject) {
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        const Setup& own = trial.setup;
-        if (own.global() || own.dimension == 1 || trial.info.state_size == 0) return false;
-        const Setup host = host_of(own, false);
-        if (!(trial.law.delassus_forms & host.form) || !(trial.law.frames & ILAW_FRAME_GLOBAL) ||
-            !create(trial.law, host, trial.values))
-          return false;
-        expect_carried(trial, Trial(trial.law, host, trial.values), draw);
-        return true;
-      },
-      "the law has no state, or serves one frame alone");
+bool history_carried(const Trial& trial, Draw& draw) {
+  const Setup& own = trial.setup;
+  if (own.global() || own.dimension == 1 || trial.info.state_size == 0) return false;
+  const Setup host = host_of(own, false);
+  if (!serves(trial, host)) return false;
+  expect_carried(trial, Trial(trial.law, host, trial.values), draw);
+  return true;
 }
 
 // A state of the model as it would be in the turned one.
@@ -274,91 +250,69 @@ std::vector<double> turned_state(const Trial& trial, std::vector<double> state, 
   return state;
 }
 
-void turned_whole(const Subject& subject) {
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        if (!trial.setup.global() || trial.setup.dimension == 1 || trial.setup.form == ILAW_DELASSUS_DIAGONAL)
-          return false;
-        const Script script = draw_script(trial, draw);
-        const Matrix rotation = draw_axes(trial.setup.dimension, draw);
-        Script other;
-        for (const Inputs& in : script) other.push_back(turned_as_a_whole(in, rotation));
-        expect_steps_alike(
-            trial, script, trial, other, "with the whole model turned",
-            [&](std::vector<double> state) { return turned_state(trial, std::move(state), rotation); },
-            [&](std::size_t, const Action& a) { return turned(transposed(rotation), a); });
-        return true;
-      },
-      "the law serves no global frame in 2D or 3D");
+bool turned_whole(const Trial& trial, Draw& draw) {
+  if (!trial.setup.global() || trial.setup.dimension == 1 || trial.setup.form == ILAW_DELASSUS_DIAGONAL)
+    return false;
+  const Script script = draw_script(trial, draw);
+  const Matrix rotation = draw_axes(trial.setup.dimension, draw);
+  const Script other = each_of(script, [&](const Inputs& in) { return turned_as_a_whole(in, rotation); });
+  expect_steps_alike(
+      trial, script, trial, other, "with the whole model turned",
+      [&](std::vector<double> state) { return turned_state(trial, std::move(state), rotation); },
+      [&](std::size_t, const Action& a) { return turned(transposed(rotation), a); });
+  return true;
 }
 
-void mirror(const Subject& subject) {
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        const Setup& own = trial.setup;
-        if (own.global() || own.dimension == 1) return false;
-        const Script script = draw_script(trial, draw);
-        Script other = script;
-        for (Inputs& in : other)
-          for (std::size_t i = 0; i < in.count; ++i) {
-            in.v_free[i * in.dimension + 1] *= -1.0;
-            in.v_previous[i * in.dimension + 1] *= -1.0;
-            if (!in.v_smooth.empty()) in.v_smooth[i * in.dimension + 1] *= -1.0;
-            if (own.spins())  // of an axial vector the components in the mirror change their sign
-              for (const std::size_t c : {0U, 2U}) {
-                in.spin_free[i * in.dimension + c] *= -1.0;
-                in.spin_previous[i * in.dimension + c] *= -1.0;
-              }
-            if (own.form != ILAW_DELASSUS_FULL) continue;
-            double* couplings = &in.delassus[i * in.form_width + in.dimension];
-            couplings[0] *= -1.0;                         // 01
-            if (in.dimension == 3) couplings[2] *= -1.0;  // 12
-          }
-        expect_image(trial, script, run(trial, script), run(trial, other), "in a mirror",
-                     [](std::size_t, const Action& a) {
-                       const auto& [r, m] = a;
-                       return Action{{r[0], -r[1], r[2]}, {-m[0], m[1], -m[2]}};
-                     });
-        return true;
-      },
-      "the law serves no tangents");
+bool mirror(const Trial& trial, Draw& draw) {
+  const Setup& own = trial.setup;
+  if (own.global() || own.dimension == 1) return false;
+  const Script script = draw_script(trial, draw);
+  Script other = script;
+  for (Inputs& in : other)
+    for (std::size_t i = 0; i < in.count; ++i) {
+      in.v_free[i * in.dimension + 1] *= -1.0;
+      in.v_previous[i * in.dimension + 1] *= -1.0;
+      if (!in.v_smooth.empty()) in.v_smooth[i * in.dimension + 1] *= -1.0;
+      if (own.spins())  // of an axial vector the components in the mirror change their sign
+        for (const std::size_t c : {0U, 2U}) {
+          in.spin_free[i * in.dimension + c] *= -1.0;
+          in.spin_previous[i * in.dimension + c] *= -1.0;
+        }
+      if (own.form != ILAW_DELASSUS_FULL) continue;
+      double* couplings = &in.delassus[i * in.form_width + in.dimension];
+      couplings[0] *= -1.0;                         // 01
+      if (in.dimension == 3) couplings[2] *= -1.0;  // 12
+    }
+  expect_image(trial, script, run(trial, script), run(trial, other), "in a mirror",
+               [](std::size_t, const Action& a) {
+                 const auto& [r, m] = a;
+                 return Action{{r[0], -r[1], r[2]}, {-m[0], m[1], -m[2]}};
+               });
+  return true;
 }
 
 // An instance that in the host's axes needs no tangent knows no direction along the interface.
-void isotropy(const Subject& subject) {
-  for_trials(
-      subject,
-      [](const Trial& trial, Draw& draw) {
-        const Setup& own = trial.setup;
-        if (own.global() || own.dimension != 3) return false;
-        if (own.form == ILAW_DELASSUS_DIAGONAL || own.form == ILAW_DELASSUS_FULL) return false;
-        const Setup host = host_of(own, false);
-        if (!create(trial.law, host, trial.values)) return false;
-        const double angle = draw.within(0.2, 1.3), c = std::cos(angle), s = std::sin(angle);
-        const Matrix spin{Vector{1.0, 0.0, 0.0}, {0.0, c, s}, {0.0, -s, c}},
-            back{Vector{1.0, 0.0, 0.0}, {0.0, c, -s}, {0.0, s, c}};
-        const Script script = draw_script(trial, draw);
-        Script other;
-        for (const Inputs& in : script) other.push_back(turned_as_a_whole(in, spin));
-        expect_image(trial, script, run(trial, script), run(trial, other), "turned about the normal",
-                     [&](std::size_t, const Action& a) { return turned(back, a); });
-        expect_indifferent(trial, host, script, draw_axes_of(script, draw));
-        return true;
-      },
-      "the law tells its tangents apart");
+bool isotropy(const Trial& trial, Draw& draw) {
+  const Setup& own = trial.setup;
+  if (own.global() || own.dimension != 3) return false;
+  if (own.form == ILAW_DELASSUS_DIAGONAL || own.form == ILAW_DELASSUS_FULL) return false;
+  const Setup host = host_of(own, false);
+  if (!create(trial.law, host, trial.values)) return false;
+  const double angle = draw.within(0.2, 1.3), c = std::cos(angle), s = std::sin(angle);
+  const Matrix spin{Vector{1.0, 0.0, 0.0}, {0.0, c, s}, {0.0, -s, c}},
+      back{Vector{1.0, 0.0, 0.0}, {0.0, c, -s}, {0.0, s, c}};
+  const Script script = draw_script(trial, draw);
+  const Script other = each_of(script, [&](const Inputs& in) { return turned_as_a_whole(in, spin); });
+  expect_image(trial, script, run(trial, script), run(trial, other), "turned about the normal",
+               [&](std::size_t, const Action& a) { return turned(back, a); });
+  expect_indifferent(trial, host, script, draw_axes_of(script, draw));
+  return true;
 }
 
 // Values of the parameters in other units; none where one has a unit that is none.
 std::optional<Values> in_units(const Trial& trial, const Units& units) {
-  std::vector<std::string> symbols;
-  std::map<std::string, double> numbers;
-  for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
-    const ilaw_parameter& p = *trial.law.parameters[k];
-    symbols.emplace_back(p.symbol);
-    numbers[p.symbol] = number_of(trial.law, trial.values, p.name);
-  }
+  const std::vector<std::string> symbols = symbols_of(trial.law);
+  const std::map<std::string, double> numbers = numbers_by_symbol(trial.law, trial.values);
   Values values = trial.values;
   for (const ilaw_parameter* p : trial.parameters()) {
     if (p->kind == ILAW_KIND_CHOICE) continue;
@@ -391,25 +345,19 @@ Inputs in_units(Inputs in, const Units& units) {
   return in;
 }
 
-void other_units(const Subject& subject) {
+bool other_units(const Trial& trial, Draw& draw) {
   const Units units{0x1p+20, 0x1p-12, 0x1p+7};
-  for_trials(
-      subject,
-      [&](const Trial& trial, Draw& draw) {
-        const std::optional<Values> values = in_units(trial, units);
-        if (!values || !create(trial.law, trial.setup, *values)) return false;
-        const Trial scaled(trial.law, trial.setup, *values);
-        const Script script = draw_script(trial, draw);
-        Script other;
-        for (const Inputs& in : script) other.push_back(in_units(in, units));
-        expect_image(scaled, script, run(trial, script), run(scaled, other), "in other units",
-                     [&](std::size_t, const Action& a) {
-                       return Action{check::scaled(1.0 / units.impulse(), a.impulse),
-                                     check::scaled(1.0 / (units.impulse() * units.length), a.moment)};
-                     });
-        return true;
-      },
-      "a unit of a parameter is not known");
+  const std::optional<Values> values = in_units(trial, units);
+  if (!values || !create(trial.law, trial.setup, *values)) return false;
+  const Trial in_others(trial.law, trial.setup, *values);
+  const Script script = draw_script(trial, draw);
+  const Script other = each_of(script, [&](const Inputs& in) { return in_units(in, units); });
+  expect_image(in_others, script, run(trial, script), run(in_others, other), "in other units",
+               [&](std::size_t, const Action& a) {
+                 return Action{scaled(1.0 / units.impulse(), a.impulse),
+                               scaled(1.0 / (units.impulse() * units.length), a.moment)};
+               });
+  return true;
 }
 
 }  // namespace
@@ -417,21 +365,22 @@ void other_units(const Subject& subject) {
 std::vector<Rule> symmetry_rules() {
   return {
       {"form-agreement", "The same H gives the same impulse in whichever form it is given.",
-       "ilaw.h, ILAW_DELASSUS_SCALAR", Needs::motion, form_agreement},
+       "ilaw.h, ILAW_DELASSUS_SCALAR", on_trials(form_agreement, "the law serves one form of H alone")},
       {"frame-indifference", "An impulse, and a moment, is the same in local axes and in those of the host.",
-       "ilaw.h, ILAW_FRAME_GLOBAL", Needs::motion, frame_indifference},
+       "ilaw.h, ILAW_FRAME_GLOBAL", on_trials(frame_indifference, "the law serves one frame alone")},
       {"frame-turned", "When the whole model is turned, impulses and moments turn with it.",
-       "ilaw.h, ILAW_KIND_AXIS", Needs::motion, turned_whole},
+       "ilaw.h, ILAW_KIND_AXIS", on_trials(turned_whole, "the law serves no global frame in 2D or 3D")},
       {"history-carried",
        "Without tangents a history is carried from normal to normal by the shortest rotation.",
-       "abi.md, Histories and rotations", Needs::motion, history_carried},
+       "abi.md, Histories and rotations",
+       on_trials(history_carried, "the law has no state, or serves one frame alone")},
       {"isotropy",
        "An instance that needs no tangent knows no direction along the interface, and is the same without.",
-       "ilaw.h, ILAW_INPUT_TANGENT", Needs::motion, isotropy},
+       "ilaw.h, ILAW_INPUT_TANGENT", on_trials(isotropy, "the law tells its tangents apart")},
       {"mirror", "In a mirror impulses are mirrored, and moments as axial vectors.", "check.md, Symmetries",
-       Needs::motion, mirror},
+       on_trials(mirror, "the law serves no tangents")},
       {"units", "In other units, by those that its parameters declare, impulses and moments are the same.",
-       "ilaw.h, Conventions", Needs::motion, other_units}};
+       "ilaw.h, Conventions", on_trials(other_units, "a unit of a parameter is not known")}};
 }
 
 }  // namespace ilaw::check

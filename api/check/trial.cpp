@@ -50,6 +50,12 @@ std::string text_of(const Value& value) {
 
 }  // namespace
 
+std::string text_of(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.17g", value);
+  return text.data();
+}
+
 std::string text_of(const Values& values) {
   std::string text;
   for (const Value& value : values) text += (text.empty() ? "" : ", ") + text_of(value);
@@ -144,7 +150,7 @@ ilaw_instance_info Instance::info() const {
   info.struct_size = sizeof info;
   calling("info");
   if (const std::int32_t code = law_->info(made_, &info); code != ILAW_OK)
-    throw Finding{"info returned " + std::to_string(code) + " for its own instance", "ILAW_OK", {}, {}};
+    throw Finding{joined("info returned ", code, " for its own instance"), "ILAW_OK"};
   return info;
 }
 
@@ -166,30 +172,30 @@ std::optional<Instance> create(const ilaw_law& law, const ilaw_setup& setup, Ref
   message.back() = '\0';
   refusal.message = message.data();
   if (refusal.code != ILAW_OK) return std::nullopt;
-  if (!made) throw Finding{"create returned ILAW_OK and no instance", "an instance", {}, {}};
+  if (!made) throw Finding{"create returned ILAW_OK and no instance", "an instance"};
   return Instance(law, made);
 }
 
 std::optional<Instance> create(const ilaw_law& law, const Setup& setup, const Values& values) {
-  const SetupStruct given(setup, values);
   Refusal refusal{};
-  set_setting(text_of(setup) + "; " + text_of(values));
+  return create(law, setup, values, refusal);
+}
+
+std::optional<Instance> create(const ilaw_law& law, const Setup& setup, const Values& values,
+                               Refusal& refusal) {
+  const SetupStruct given(setup, values);
+  set_setting(joined(text_of(setup), "; ", text_of(values)));
   return create(law, given.given, refusal);
 }
 
 namespace {
 
 Instance created(const ilaw_law& law, const Setup& setup, const Values& values) {
-  const SetupStruct given(setup, values);
   Refusal refusal{};
-  set_setting(text_of(setup) + "; " + text_of(values));
-  std::optional<Instance> made = create(law, given.given, refusal);
-  if (!made)
-    throw Finding{"create refused them with code " + std::to_string(refusal.code) + ": " + refusal.message,
-                  "an instance, since it accepted these parameters before",
-                  text_of(setup) + "; " + text_of(values),
-                  {}};
-  return std::move(*made);
+  if (std::optional<Instance> made = create(law, setup, values, refusal)) return std::move(*made);
+  throw Finding{joined("create refused them with code ", refusal.code, ": ", refusal.message),
+                "an instance, since it accepted these parameters before",
+                joined(text_of(setup), "; ", text_of(values))};
 }
 
 }  // namespace
@@ -208,8 +214,8 @@ std::optional<std::uint32_t> axis_of(const ilaw_parameter& p, const std::string&
 }
 
 const ilaw_parameter* parameter_of(const ilaw_law& law, const std::string& name) {
-  for (std::uint32_t k = 0; k < law.parameter_count; ++k)
-    if (name == law.parameters[k]->name) return law.parameters[k];
+  for (const ilaw_parameter* p : all_parameters(law))
+    if (name == p->name) return p;
   return nullptr;
 }
 
@@ -243,6 +249,18 @@ std::vector<Setup> setups_of(const ilaw_law& law) {
   return setups;
 }
 
+std::vector<std::string> symbols_of(const ilaw_law& law) {
+  std::vector<std::string> symbols;
+  for (const ilaw_parameter* p : all_parameters(law)) symbols.emplace_back(p->symbol);
+  return symbols;
+}
+
+std::map<std::string, double> numbers_by_symbol(const ilaw_law& law, const Values& values) {
+  std::map<std::string, double> numbers;
+  for (const ilaw_parameter* p : all_parameters(law)) numbers[p->symbol] = number_of(law, values, p->name);
+  return numbers;
+}
+
 std::vector<const ilaw_parameter*> parameters_of(const ilaw_law& law, const Setup& setup) {
   std::vector<const ilaw_parameter*> all(law.parameters, law.parameters + law.parameter_count);
   if (!setup.spins())
@@ -253,16 +271,10 @@ std::vector<const ilaw_parameter*> parameters_of(const ilaw_law& law, const Setu
 std::optional<double> natural_value(const ilaw_law& law, const ilaw_parameter& p) {
   // Moments have arms of order one; other lengths are those of a step.
   const Units natural{1.0, has(p, ILAW_FLAG_NEEDS_SPINS) ? 1.0 : 0x1p-10, 0x1p-10};
-  std::vector<std::string> symbols;
-  std::map<std::string, double> numbers;
-  for (std::uint32_t k = 0; k < law.parameter_count; ++k) {
-    symbols.emplace_back(law.parameters[k]->symbol);
-    numbers[symbols.back()] = law.parameters[k]->default_value;
-  }
-  std::optional<Dimensions> unit = parse_unit(p.unit, symbols);
+  std::optional<Dimensions> unit = parse_unit(p.unit, symbols_of(law));
   if (!unit) return std::nullopt;
   unit->fixed.length += 2.0 * unit->fixed.mass;  // per area, which is of order one
-  const double value = unit->in(natural, numbers);
+  const double value = unit->in(natural, numbers_by_symbol(law, {}));
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 

@@ -11,9 +11,12 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace ilaw::check {
@@ -22,6 +25,24 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr double ulp = std::numeric_limits<double>::epsilon();
 inline bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+// As many digits as tell it from all others.
+std::string text_of(double value);
+// Texts and numbers one after another.
+template <class... Parts>
+std::string joined(const Parts&... parts) {
+  std::string text;
+  const auto add = [&text](const auto& part) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(part)>, double>)
+      text += text_of(part);
+    else if constexpr (std::is_arithmetic_v<std::decay_t<decltype(part)>>)
+      text += std::to_string(part);
+    else
+      text += part;
+  };
+  (add(parts), ...);
+  return text;
 }
 
 struct TableAxis {
@@ -99,6 +120,8 @@ class Instance {
 // Makes an instance, or says why not.
 std::optional<Instance> create(const ilaw_law& law, const ilaw_setup& setup, Refusal& refusal);
 std::optional<Instance> create(const ilaw_law& law, const Setup& setup, const Values& values);
+std::optional<Instance> create(const ilaw_law& law, const Setup& setup, const Values& values,
+                               Refusal& refusal);
 
 // A law with parameters and a setup that it accepts.
 struct Trial {
@@ -135,6 +158,12 @@ double number_of(const ilaw_law& law, const Values& values, const std::string& n
 
 // All setups that the law's description serves, with doubles first, and spins before others.
 std::vector<Setup> setups_of(const ilaw_law& law);
+inline std::span<const ilaw_parameter* const> all_parameters(const ilaw_law& law) {
+  return {law.parameters, law.parameter_count};
+}
+// By their symbols, which units have as powers.
+std::vector<std::string> symbols_of(const ilaw_law& law);
+std::map<std::string, double> numbers_by_symbol(const ilaw_law& law, const Values& values);
 // The parameters that a setup may be given: without spins those that need none.
 std::vector<const ilaw_parameter*> parameters_of(const ilaw_law& law, const Setup& setup);
 // A value of a parameter within what its description allows.

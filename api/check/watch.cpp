@@ -24,6 +24,7 @@
 #include <iterator>
 #include <memory>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 namespace ilaw::check {
@@ -70,42 +71,30 @@ struct Dynamic {
   std::size_t sizes[2] = {0, 0};
 };
 
+// The value of an entry, 0 without it.
+ElfW(Addr) entry_of(const link_map& map, ElfW(Sxword) tag) {
+  for (const ElfW(Dyn)* entry = map.l_ld; entry->d_tag != DT_NULL; ++entry)
+    if (entry->d_tag == tag) return entry->d_un.d_ptr;
+  return 0;
+}
+
 Dynamic dynamic_of(const link_map& map) {
+  const auto place = [&](ElfW(Sxword) tag, auto& found) {
+    const ElfW(Addr) address = entry_of(map, tag);
+    // Some C libraries leave the addresses as they are in the file.
+    const ElfW(Addr) offset = address < map.l_addr ? map.l_addr : 0;
+    if (address) found = reinterpret_cast<std::decay_t<decltype(found)>>(address + offset);
+  };
   Dynamic found;
   found.base = map.l_addr;
-  for (const ElfW(Dyn)* entry = map.l_ld; entry->d_tag != DT_NULL; ++entry) {
-    // Some C libraries leave the addresses as they are in the file.
-    const ElfW(Addr) offset = entry->d_un.d_ptr < map.l_addr ? map.l_addr : 0;
-    const void* const address = reinterpret_cast<const void*>(entry->d_un.d_ptr + offset);
-    switch (entry->d_tag) {
-      case DT_HASH:
-        found.hash = static_cast<const std::uint32_t*>(address);
-        break;
-      case DT_GNU_HASH:
-        found.gnu_hash = static_cast<const std::uint32_t*>(address);
-        break;
-      case DT_SYMTAB:
-        found.symbols = static_cast<const ElfW(Sym)*>(address);
-        break;
-      case DT_STRTAB:
-        found.strings = static_cast<const char*>(address);
-        break;
-      case DT_JMPREL:
-        found.tables[0] = static_cast<const ElfW(Rela)*>(address);
-        break;
-      case DT_PLTRELSZ:
-        found.sizes[0] = entry->d_un.d_val / sizeof(ElfW(Rela));
-        break;
-      case DT_RELA:
-        found.tables[1] = static_cast<const ElfW(Rela)*>(address);
-        break;
-      case DT_RELASZ:
-        found.sizes[1] = entry->d_un.d_val / sizeof(ElfW(Rela));
-        break;
-      default:
-        break;
-    }
-  }
+  place(DT_HASH, found.hash);
+  place(DT_GNU_HASH, found.gnu_hash);
+  place(DT_SYMTAB, found.symbols);
+  place(DT_STRTAB, found.strings);
+  place(DT_JMPREL, found.tables[0]);
+  place(DT_RELA, found.tables[1]);
+  found.sizes[0] = entry_of(map, DT_PLTRELSZ) / sizeof(ElfW(Rela));
+  found.sizes[1] = entry_of(map, DT_RELASZ) / sizeof(ElfW(Rela));
   return found;
 }
 

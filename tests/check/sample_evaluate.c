@@ -61,6 +61,8 @@ static int lacks_spins(const ilaw_instance* made, const ilaw_batch* b) {
 
 static int is_flat(const ilaw_input* a) { return (a->values || a->floats) && a->component_stride == 0; }
 
+static int is_shared(const ilaw_output* a) { return (a->values || a->floats) && a->node_stride == 0; }
+
 static const char* wrong_arrays(const ilaw_instance* made, const ilaw_batch* b) {
   const spin_arrays spins = spins_of(b);
   const int global = made->setup.frame == ILAW_FRAME_GLOBAL,
@@ -90,11 +92,10 @@ static const char* wrong_arrays(const ilaw_instance* made, const ilaw_batch* b) 
       return "an amount is of another number type";
   if (!b->state_in.values || (b->state_in.floats && !breaks("array-numbers: state")) || b->state_out.floats)
     return "a state is missing or of floats";
-  if (b->node_count > 1 && b->impulse.node_stride == 0) return "impulse has a stride of 0";
-  if (made->setup.delassus_form == ILAW_DELASSUS_TRANSVERSE_SPIN && b->node_count > 1 &&
-      (spins.moment.node_stride == 0 ||
-       (spins.after.node_stride == 0 && (spins.after.values || spins.after.floats))))
-    return "moment or spin has a stride of 0";
+  if (b->node_count > 1 && (is_shared(&b->impulse) || is_shared(&b->velocity) || is_shared(&b->energy) ||
+                            (is_shared(&b->state_out) && !breaks("call-refused: state stride")) ||
+                            is_shared(&spins.moment) || is_shared(&spins.after)))
+    return "an output has a stride of 0";
   return NULL;
 }
 

@@ -66,3 +66,7 @@ ilaw_add_wrong_law(rccm_force rccm plugins/bond/bond_step.hpp "p_.state.opening 
 # Friction against the slip after a force that turned it round within the step: it works along the way before.
 ilaw_add_wrong_law(table_friction_turned table_friction api/include/ilaw/kit/friction.hpp
                    "const auto gains = along < impact;" "const auto gains = none<V>();")
+# Has one strength for a large area and a small one.
+ilaw_add_wrong_law(tie_area tie plugins/tie/tie.cpp "strength * node.area" "strength")
+# Has another unit than it says.
+ilaw_add_wrong_law(tie_unit tie plugins/tie/tie.cpp "\"N.s/m^2\"" "\"N.s\"")
