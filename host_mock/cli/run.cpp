@@ -71,6 +71,7 @@ class Run {
       check::Progress own("run", "steps", static_cast<double>(scene_.steps), options_.progress);
       check::Progress& progress = options_.shared ? *options_.shared : own;
       own.begin_at(static_cast<double>(integrator_.steps()));
+      const double start_of_steps = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
       while (integrator_.steps() < scene_.steps && !stop_requested()) {
         audited([this] { integrator_.step(); });
         tell_of_stable_step();
@@ -79,6 +80,7 @@ class Run {
         write_outputs();
         progress.add(1.0);
       }
+      record.seconds_steps = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start_of_steps;
       record.interrupted = integrator_.steps() < scene_.steps;
       check_results();
       // Also at the end, to go on to a later one.

@@ -89,10 +89,11 @@ std::vector<std::string> History::columns() const {
     }
   }
   forces_.add_names(names);
+  if (scene_.output.interface_work) names.emplace_back("balance.interface_work");
   if (scene_.output.balance) {
-    for (const char* quantity :
-         {"kinetic", "internal", "potential", "external_work", "damping_work", "interface_work",
-          "dissipated_friction", "dissipated_impact", "dissipated_rupture", "stored", "error"})
+    for (const char* quantity : {"kinetic", "internal", "potential", "external_work", "damping_work",
+                                 "interface_work", "dissipated_friction", "dissipated_impact",
+                                 "dissipated_rupture", "stored", "reaction_work", "largest", "error"})
       names.push_back(std::string("balance.") + quantity);
     for (int c = 0; c < (d == 1 ? 0 : d == 2 ? 1 : 3); ++c)
       names.push_back("balance.angular_momentum" + std::to_string(c));
@@ -200,12 +201,14 @@ void History::add_row(const Integrator& integrator) {
       add_node(w, integrator, is_alone_[w] && !motions_.empty() ? held : impulse);
   }
   forces_.write_row(*table_, integrator.time());
+  if (scene_.output.interface_work) *table_ << integrator.interface_work();
   if (scene_.output.balance) {
     const EnergyReport energy = integrator.energy();
     for (const double value :
          {energy.kinetic, energy.internal, energy.potential, energy.external_work, energy.damping_work,
           energy.interface_work, energy.by_law[ILAW_ENERGY_FRICTION], energy.by_law[ILAW_ENERGY_IMPACT],
-          energy.by_law[ILAW_ENERGY_RUPTURE], energy.by_law[ILAW_ENERGY_STORED], energy.balance_error})
+          energy.by_law[ILAW_ENERGY_RUPTURE], energy.by_law[ILAW_ENERGY_STORED], energy.reaction_work,
+          energy.scale, energy.balance_error})
       *table_ << value;
     for (const double component : integrator.angular_momentum()) *table_ << component;
     if (integrator.temperatures()) {
