@@ -16,10 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // The folders of host_mock from the ground up: each may include itself and those before it.
-const std::vector<std::string> floors = {"host/base",          "host/mortar",       "host/model",
-                                         "host/contact",       "host/step",         "host/scene",
-                                         "host/results",       "instruments/audit", "instruments/stress",
-                                         "instruments/bench", "cli"};
+const std::vector<std::string> floors = {
+    "host/base",    "host/mortar",       "host/model",         "host/contact",      "host/step", "host/scene",
+    "host/results", "instruments/audit", "instruments/stress", "instruments/bench", "cli"};
 
 std::string first_folder(const std::string& path) { return path.substr(0, path.find('/')); }
 
