@@ -56,6 +56,8 @@ class Run {
         integrator_(*scene.model, scene.loads, scene.interfaces, scene.dt, scene.prestress),
         fields_(scene, options.folder),
         history_(scene, integrator_) {
+    for (const auto& interface : scene.interfaces)
+      interface->ask_energies(scene.output.energy != "interface_work");
     if (options.audits) audit_.emplace(scene, integrator_);
     if (options.tolerance) integrator_.set_tolerance(*options.tolerance);
     if (!expected().empty()) check_expectations(expected(), summary(), history_.columns());

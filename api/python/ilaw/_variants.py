@@ -163,12 +163,12 @@ class Scenes:
 
     def seconds(self, scene: Scene, steps: int) -> float:
         """Of the processor, for the steps alone."""
-        run = self._run_scene({**scene, "output": {"every": steps}}, self.quick_room)
+        run = self._run_scene({**scene, "output": {"every": steps, "balance": "interface_work"}}, self.quick_room)
         return run.summary["seconds"]["steps"]
 
     def is_stable(self, scene: Scene, steps: int) -> bool:
         """A run is stable if it does not fail and its interfaces put in little energy at any time."""
-        output = {"every": max(steps // 500, 1), "balance": True}
+        output = {"every": max(steps // 500, 1), "balance": "reaction_work"}
         try:
             names, rows = self._run_scene({**scene, "output": output}, self.quick_room).history()
         except Failed:
