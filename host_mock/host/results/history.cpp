@@ -212,8 +212,7 @@ void History::add_row(const Integrator& integrator) {
     for (const double value :
          {energy.kinetic, energy.internal, energy.potential, energy.external_work, energy.damping_work,
           energy.interface_work, energy.by_law[ILAW_ENERGY_FRICTION], energy.by_law[ILAW_ENERGY_IMPACT],
-          energy.by_law[ILAW_ENERGY_RUPTURE], energy.by_law[ILAW_ENERGY_STORED], energy.reaction_work,
-          energy.scale, energy.balance_error})
+          energy.by_law[ILAW_ENERGY_RUPTURE], energy.by_law[ILAW_ENERGY_STORED], energy.balance_error})
       *table_ << value;
     for (const double component : integrator.angular_momentum()) *table_ << component;
     if (integrator.temperatures()) {
