@@ -293,6 +293,28 @@ def test_impulse_is_that_of_each_interface(tmp_path):
     assert (probe.least_mass, probe.watched, probe.steps, probe.critical_step) == (2.0, 1, 50, math.inf)
 
 
+def test_one_energy_alone_is_that_of_the_balance(tmp_path):
+    """The work takes no question to the laws, and the energy that they add needs their answers; both can be drawn."""
+    scene = ball()
+    found = {}
+    for energy in ("interface_work", "reaction_work", True):
+        scene["output"] = {"watch": [0], "balance": energy}
+        (tmp_path / "scene.json").write_text(json.dumps(scene))
+        assert program("run", tmp_path / "scene.json", "--out", tmp_path / f"{energy}").returncode == 0
+        found[energy] = rows_of(tmp_path / f"{energy}/history.csv")
+    assert program("plot", tmp_path / "interface_work").returncode == 0
+    whole = found[True]
+    assert [row["balance.interface_work"] for row in found["interface_work"]] == [
+        row["balance.interface_work"] for row in whole]  # fmt: skip
+    assert "balance.kinetic" not in found["interface_work"][0]
+    for row, full in zip(found["reaction_work"], whole):
+        parts = ("interface_work", "dissipated_friction", "dissipated_impact", "dissipated_rupture", "stored")
+        assert row["balance.reaction_work"] == pytest.approx(sum(full[f"balance.{part}"] for part in parts), abs=1e-12)
+    largest = [row["balance.largest"] for row in found["reaction_work"]]
+    assert largest[-1] == json.loads((tmp_path / "True/summary.json").read_text())["energy"]["largest"] > 0
+    assert largest[-1] >= max(row["balance.kinetic"] for row in whole)
+
+
 # ---- ilaw study -------------------------------------------------------------------------------------------------------
 
 
