@@ -31,24 +31,6 @@ void add_threads(CLI::App& command, int& threads) {
 
 void set_threads(int threads) { omp_set_num_threads(threads); }
 
-Sweep SweepOptions::over(Sweep said) const {
-  said.levels = levels.value_or(said.levels);
-  said.factor = factor.value_or(said.factor);
-  if (refine) said.with_mesh = *refine == "mesh";
-  said.threads = threads;
-  return said;
-}
-
-void add_sweep(CLI::App& command, SweepOptions& options, const std::string& levels,
-               const CLI::Range& allowed) {
-  command.add_option("--levels", options.levels, levels)->check(allowed);
-  command.add_option("--factor", options.factor, "Refinement from run to run")
-      ->check(number_from(1.01, 10.0));
-  command.add_option("--refine", options.refine, "time, or mesh (with the time step)")
-      ->check(CLI::IsMember({"time", "mesh"}));
-  add_threads(command, options.threads);
-}
-
 void remove_pictures(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> found;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

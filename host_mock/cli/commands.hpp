@@ -5,7 +5,6 @@
 #pragma once
 
 #include "base/scene_error.hpp"
-#include "study/sweep.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -36,19 +35,6 @@ CLI::Validator number_from(double least, double most);
 // The option --threads, for commands that run scenes.
 void add_threads(CLI::App& command, int& threads);
 void set_threads(int threads);
-
-// Options that replace the keys of a sweep in a scene.
-struct SweepOptions {
-  std::optional<int> levels;
-  std::optional<double> factor;
-  std::optional<std::string> refine;  // "time" or "mesh"
-  int threads = 1;                    // of each run
-
-  Sweep over(Sweep said) const;
-};
-// The options --levels, --factor, --refine and --threads.
-void add_sweep(CLI::App& command, SweepOptions& options, const std::string& levels,
-               const CLI::Range& allowed);
 
 // Runs work; a mistake in a scene names its file.
 template <class Work>

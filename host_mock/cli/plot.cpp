@@ -15,24 +15,6 @@ struct PlotOptions {
   std::string x = "time", out;
 };
 
-// "--y=a,b"; nothing without words.
-void add_list(std::vector<std::string>& arguments, const std::string& option,
-              const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? option + "=" : ",") + word;
-  if (!words.empty()) arguments.push_back(text);
-}
-
-void plot(const PlotOptions& options) {
-  std::vector<std::string> arguments = {"--x=" + options.x};
-  add_list(arguments, "--panels", options.panels);
-  add_list(arguments, "--y", options.y);
-  if (!options.out.empty()) arguments.push_back("--out=" + options.out);
-  arguments.emplace_back("--");
-  arguments.insert(arguments.end(), options.folders.begin(), options.folders.end());
-  run_python("ilaw.plot", arguments, "numpy, matplotlib", "python3-numpy python3-matplotlib");
-}
-
 }  // namespace
 
 void add_plot(CLI::App& app, int& /*code*/) {
@@ -52,7 +34,7 @@ void add_plot(CLI::App& app, int& /*code*/) {
   command->footer(
       "Writes .png and .svg.\n"
       "Example: ilaw plot results\n         ilaw plot results/* --y glue.F2,n50.u2");
-  command->callback([options] { plot(*options); });
+  run_in_python(*command, "ilaw.plot", "numpy matplotlib", "python3-numpy python3-matplotlib", options);
 }
 
 }  // namespace ilaw::host

@@ -9,11 +9,36 @@
 #include <filesystem>
 #include <iterator>
 #include <stdexcept>
+#include <vector>
 
 namespace ilaw::host {
+namespace {
 
-void run_python(const std::string& module, const std::vector<std::string>& arguments,
-                const std::string& imports, const std::string& debian_packages) {
+// "--levels=3", or "--y=a,b" if commas stand between the values of an option; after them the arguments.
+std::vector<std::string> given_to(const CLI::App& command) {
+  std::vector<std::string> words, arguments = {"--"};
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() == 0) continue;
+    if (option->get_positional()) {
+      arguments.insert(arguments.end(), option->results().begin(), option->results().end());
+    } else if (option->get_items_expected_max() == 0) {
+      words.push_back(option->get_name());
+    } else {
+      std::string joined;
+      for (const std::string& value : option->results()) {
+        if (option->get_delimiter() == '\0' || joined.empty())
+          words.push_back(joined = option->get_name() + "=" + value);
+        else
+          words.back() += option->get_delimiter() + value;
+      }
+    }
+  }
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return words;
+}
+
+[[noreturn]] void become(const std::string& module, const std::vector<std::string>& arguments,
+                         const std::string& packages, const std::string& debian_packages) {
   const std::filesystem::path package =
       std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "share/ilaw/python";
   if (!std::filesystem::is_directory(package / "ilaw"))
@@ -24,7 +49,10 @@ void run_python(const std::string& module, const std::vector<std::string>& argum
   setenv("PYTHONPATH", (package.string() + (others ? ":" + std::string(others) : "")).c_str(), 1);
   std::fflush(nullptr);
   for (const std::string python : {"python3", "/usr/bin/python3"}) {
-    if (std::system((python + " -B -c 'import " + imports + "' 2> /dev/null").c_str()) != 0) continue;
+    // Found, not imported, which would take as long as the command itself.
+    const std::string look = " -B -c 'from importlib.util import find_spec as f; exit(not all(map(f, \"" +
+                             packages + "\".split())))' 2> /dev/null";
+    if (std::system((python + look).c_str()) != 0) continue;
     std::vector<std::string> words = {python, "-B", "-m", module};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
@@ -33,8 +61,16 @@ void run_python(const std::string& module, const std::vector<std::string>& argum
     pointers.push_back(nullptr);
     execvp(pointers[0], pointers.data());
   }
-  throw std::runtime_error("found no Python 3 with " + imports + "; install it with `apt-get install " +
+  throw std::runtime_error("found no Python 3 with " + packages + "; install it with `apt-get install " +
                            debian_packages + "`");
+}
+
+}  // namespace
+
+void run_in_python(CLI::App& command, const std::string& module, const std::string& packages,
+                   const std::string& debian_packages, const std::shared_ptr<void>& kept) {
+  command.callback(
+      [=, &command, kept = kept] { become(module, given_to(command), packages, debian_packages); });
 }
 
 }  // namespace ilaw::host

@@ -2,14 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <CLI/CLI.hpp>
+
+#include <memory>
 #include <string>
-#include <vector>
 
 namespace ilaw::host {
 
-// Becomes a module of share/ilaw/python with arguments, in the first Python that has the packages it imports.
-// Throws if there is none, with the Debian packages to install.
-[[noreturn]] void run_python(const std::string& module, const std::vector<std::string>& arguments,
-                             const std::string& imports, const std::string& debian_packages);
+// Makes a command become a module of share/ilaw/python with the options and arguments that the user gave, in
+// the first Python that has the packages. Throws if there is none, with the Debian packages to install. kept:
+// what the options are bound to.
+void run_in_python(CLI::App& command, const std::string& module, const std::string& packages,
+                   const std::string& debian_packages, const std::shared_ptr<void>& kept);
 
 }  // namespace ilaw::host

@@ -56,6 +56,8 @@ class Run {
         integrator_(*scene.model, scene.loads, scene.interfaces, scene.dt, scene.prestress),
         fields_(scene, options.folder),
         history_(scene, integrator_) {
+    for (const auto& interface : scene.interfaces)
+      interface->ask_energies(scene.output.energy != "interface_work");
     if (options.audits) audit_.emplace(scene, integrator_);
     if (options.tolerance) integrator_.set_tolerance(*options.tolerance);
     if (!expected().empty()) check_expectations(expected(), summary(), history_.columns());
@@ -71,6 +73,7 @@ class Run {
       check::Progress own("run", "steps", static_cast<double>(scene_.steps), options_.progress);
       check::Progress& progress = options_.shared ? *options_.shared : own;
       own.begin_at(static_cast<double>(integrator_.steps()));
+      const double start_of_steps = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
       while (integrator_.steps() < scene_.steps && !stop_requested()) {
         audited([this] { integrator_.step(); });
         tell_of_stable_step();
@@ -79,6 +82,7 @@ class Run {
         write_outputs();
         progress.add(1.0);
       }
+      record.seconds_steps = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start_of_steps;
       record.interrupted = integrator_.steps() < scene_.steps;
       check_results();
       // Also at the end, to go on to a later one.

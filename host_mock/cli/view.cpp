@@ -14,13 +14,6 @@ struct ViewOptions {
   double megabytes = 50.0;
 };
 
-void view(const ViewOptions& options) {
-  std::vector<std::string> arguments = {"--megabytes", text_of("%.17g", options.megabytes)};
-  if (!options.out.empty()) arguments.push_back("--out=" + options.out);
-  arguments.insert(arguments.end(), {"--", options.folder});
-  run_python("ilaw.view", arguments, "numpy, vtkmodules.vtkIOXML", "python3-numpy python3-vtk9");
-}
-
 }  // namespace
 
 void add_view(CLI::App& app, int& /*code*/) {
@@ -37,7 +30,7 @@ void add_view(CLI::App& app, int& /*code*/) {
   command->footer(
       "The file opens in any browser and needs no network.\n"
       "Example: ilaw view results -o run.html");
-  command->callback([options] { view(*options); });
+  run_in_python(*command, "ilaw.view", "numpy vtkmodules.vtkIOXML", "python3-numpy python3-vtk9", options);
 }
 
 }  // namespace ilaw::host

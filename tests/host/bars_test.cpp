@@ -4,7 +4,6 @@
 #include "host_runner.hpp"
 
 #include "model/bars.hpp"
-#include "study/errors.hpp"
 
 namespace ilaw::host::testing {
 namespace {

@@ -58,13 +58,12 @@ AREAS = {
     "host": Area("host_mock/host", ["host_test", "bars_test", "mesh_test", "bodies_test", "scene_keys_test", "prestress_test",
                                     "proximity_filter_test", "program_test"]),
     "results": Area("host_mock/host/results", ["bodies_test", "fields_test", "program_test"]),
-    "study": Area("host_mock/instruments/study", ["converge_test"]),
     "stress": Area("host_mock/instruments/stress", ["stress_test"]),
-    "cli": Area("host_mock/cli", ["program_test", "scene_keys_test", "converge_test", "bench_test"]),
+    "cli": Area("host_mock/cli", ["program_test", "scene_keys_test", "bench_test"]),
     "bench": Area("host_mock/instruments/bench", ["bench_test"]),
     "python": Area("api/python/ilaw", [f"ctest python.{name}" for name in
                                        ("interface", "coupled", "fields", "search", "shapes", "bindings", "solver_machine")]
-                   + ["ctest view.plot", "ctest view.page_data"]),
+                   + ["ctest view.plot", "ctest view.page_data", "ctest view.study"]),
     "lammps": Area("api/lammps", ["ctest lammps"]), "yade": Area("api/yade", ["ctest yade"]),
     "mujoco": Area("api/mujoco", ["mujoco_test"]), "dealii": Area("api/dealii", ["ctest dealii"]),
     "openradioss": Area("api/openradioss", ["ctest openradioss"])}

@@ -212,7 +212,7 @@ def panels_of(history: History) -> list[Panel]:
     strips = {panel.name: panel for panel in relations if panel.height != SQUARE}
     found = []
     for name, curves in by_quantity.items():
-        if name == "energy":
+        if name == "energy" and "balance.kinetic" in {curve.column for curve in history.curves}:
             found.append(energy_panel(history, curves))
         elif name in strips:
             found.append(strips[name])

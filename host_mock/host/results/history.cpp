@@ -89,6 +89,8 @@ std::vector<std::string> History::columns() const {
     }
   }
   forces_.add_names(names);
+  if (!scene_.output.energy.empty()) names.push_back("balance." + scene_.output.energy);
+  if (scene_.output.energy == "reaction_work") names.emplace_back("balance.largest");
   if (scene_.output.balance) {
     for (const char* quantity :
          {"kinetic", "internal", "potential", "external_work", "damping_work", "interface_work",
@@ -200,6 +202,11 @@ void History::add_row(const Integrator& integrator) {
       add_node(w, integrator, is_alone_[w] && !motions_.empty() ? held : impulse);
   }
   forces_.write_row(*table_, integrator.time());
+  if (scene_.output.energy == "interface_work") *table_ << integrator.interface_work();
+  if (scene_.output.energy == "reaction_work") {
+    const EnergyReport energy = integrator.energy();
+    *table_ << energy.reaction_work << energy.scale;
+  }
   if (scene_.output.balance) {
     const EnergyReport energy = integrator.energy();
     for (const double value :

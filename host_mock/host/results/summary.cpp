@@ -6,7 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ilaw::host {
 namespace {
@@ -24,12 +26,16 @@ json describe_amounts(const Interface& interface) {
 }
 
 // first_contact: null where there was none.
-json describe_interface(const Interface& interface, double first_contact) {
+json describe_interface(const Scene& scene, const Interface& interface, double first_contact) {
+  double least_mass = std::numeric_limits<double>::infinity();
+  for (const int node : interface.nodes())
+    least_mass = std::min(least_mass, scene.model->mass()[Eigen::Index{node} * scene.model->dimension()]);
   return {{"name", interface.name()},
           {"law", interface.setup().law},
           {"library", interface.library().path()},
           {"library_version", interface.library().plugin().version},
           {"nodes", interface.nodes().size()},
+          {"least_mass", least_mass},
           {"first_contact", std::isinf(first_contact) ? json() : json(first_contact)},
           {"state_size", interface.info().state_size},
           {"amounts", describe_amounts(interface)},
@@ -61,7 +67,8 @@ json describe_energy(const EnergyReport& energy) {
           {"dissipated_rupture", energy.by_law[ILAW_ENERGY_RUPTURE]},
           {"stored", energy.by_law[ILAW_ENERGY_STORED]},
           {"least_dissipation", energy.least_dissipation},
-          {"reaction_work", energy.reaction_work}};
+          {"reaction_work", energy.reaction_work},
+          {"largest", energy.scale}};
 }
 
 json describe_heat(const HeatReport& heat) {
@@ -103,7 +110,7 @@ json summary_of(const Scene& scene, const Integrator& integrator, const RunRecor
   const PhaseSeconds seconds = integrator.seconds();
   json interfaces = json::array();
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i)
-    interfaces.push_back(describe_interface(*scene.interfaces[i], integrator.first_contact(i)));
+    interfaces.push_back(describe_interface(scene, *scene.interfaces[i], integrator.first_contact(i)));
   std::vector<std::string> warnings = scene.warnings;
   warnings.insert(warnings.end(), record.warnings.begin(), record.warnings.end());
   json summary = {
@@ -115,6 +122,7 @@ json summary_of(const Scene& scene, const Integrator& integrator, const RunRecor
       {"failure", record.failure},
       {"steps", integrator.steps()},
       {"dt", scene.dt},
+      {"critical_step", number_or_inf(scene.model->critical_step())},
       {"stable_step", number_or_inf(tally.stable_step)},
       {"time", integrator.time()},
       {"nodes", scene.model->node_count()},
@@ -134,6 +142,7 @@ json summary_of(const Scene& scene, const Integrator& integrator, const RunRecor
         {"worst_node", tally.worst_node < 0 ? json() : json(tally.worst_node)}}},
       {"seconds",
        {{"total", record.seconds_total},
+        {"steps", record.seconds_steps},
         {"internal_forces", seconds.internal_forces},
         {"interfaces", seconds.interfaces},
         {"output", record.seconds_output}}},

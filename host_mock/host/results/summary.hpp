@@ -20,6 +20,7 @@ struct RunRecord {
   std::string told;                                  // of them, during the run
   nlohmann::json forces = nlohmann::json::object();  // per name, as Forces sums them up
   double seconds_total = 0.0, seconds_output = 0.0;
+  double seconds_steps = 0.0;  // of the processor, with what the steps write
 };
 
 nlohmann::json summary_of(const Scene& scene, const Integrator& integrator, const RunRecord& record);

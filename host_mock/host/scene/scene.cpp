@@ -25,7 +25,9 @@ using nlohmann::json;
 
 void read_output(const json& output, Scene& scene) {
   scene.output.every = output.value("every", std::int64_t{1});
-  scene.output.balance = output.value("balance", false);
+  const json balance = output.value("balance", json(false));
+  scene.output.balance = balance == true;
+  if (balance.is_string()) scene.output.energy = balance.get<std::string>();
   scene.output.contact = output.value("contact", false);
   scene.output.events = output.value("events", false);
   scene.output.fields = output.value("fields", std::int64_t{0});

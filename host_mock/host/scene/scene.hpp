@@ -34,6 +34,7 @@ struct OutputSetup {
   std::int64_t every = 1;  // steps per row of the history
   std::vector<int> watch;  // nodes
   bool balance = false;    // energies and angular momentum in the history
+  std::string energy;      // the one that the history shows without the others
   bool contact = false;    // pressure, slip and wear of watched nodes in the history
   bool events = false;     // events.csv
   std::vector<ForceSetup> forces;
