@@ -58,7 +58,6 @@ class Bodies {
 
   // Divides the masses by these numbers of copies of each body (Tonge, Benevolenski, Voroshilov 2012).
   void split(const std::vector<double>& copies);
-  bool are_split() const { return !split_.empty(); }
 
   // Velocities in this iteration, with one fixed body behind the others.
   Body* now() { return now_.data(); }

@@ -19,10 +19,6 @@ constexpr std::uint32_t default_sweeps = 1000;
 constexpr double default_tolerance = 1e-10;
 constexpr std::uint32_t most_threads = 256;
 
-}  // namespace
-
-namespace {
-
 const char* complaint(const ilaw_coupled_options& options) {
   const auto is_positive = [](double x) { return x >= 0.0 && std::isfinite(x); };
   if (!is_positive(options.tolerance)) return "tolerance is below 0 or not finite";

@@ -12,12 +12,17 @@ bowl      An arc swings in a bowl without friction: against a rigid pendulum.
 bonds     Blocks that are glued by a law, in tension and in shear: the largest error of the traction.
 corners   A cube falls on an edge or a corner on a plate: how far it sinks in.
 impact    Two blocks meet with restitution 0, .5 and 1: the error of the pressure, and the balance of energy.
+tilted    A cube falls on a free plate with an edge, a corner, and a corner at the plate's border, with restitution 0 and 1: the
+          largest energy after the first contact over the initial one.
+stack     Four blocks on a base, each as far out as it can lie, times a factor: tilt of the blocks.
+shear     Pressure and shear grow on a face with friction 0 to 10: iterations, processor time.
 """
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import csv
 import json
 import math
+import resource
 import subprocess
 import tempfile
 from pathlib import Path
@@ -328,6 +333,78 @@ def corners(program, side):
                   f"{summary['coupling']['steps_unconverged']} of {summary['steps']} |", flush=True)
 
 
+def tilted(program, side):
+    """Roles by side. The plate is free and has edges of 1/5, the cube of 1/4."""
+    a = 0.2
+    about_y = numpy.array([[math.cos(a), 0, math.sin(a)], [0, 1, 0], [-math.sin(a), 0, math.cos(a)]])
+    about_x = numpy.array([[1, 0, 0], [0, math.cos(a), -math.sin(a)], [0, math.sin(a), math.cos(a)]])
+    for place, turn, x in (("edge", about_y, 0.03), ("corner", about_y @ about_x, 0.03), ("corner at the border", about_y @ about_x, 1.4)):
+        for restitution in (0, 1):
+            def scene(folder):
+                at = numpy.linspace(-1.5, 1.5, 16)
+                grid(folder / "a.vtu", at, at, numpy.linspace(-0.4, 0, 3), lambda points: points, {"top": 2})
+                at = numpy.linspace(-0.5, 0.5, 5)
+
+                def turned(points):
+                    points = points @ turn.T
+                    return points + [x, 0.04, 0.02 - points[:, 2].min()]
+                grid(folder / "b.vtu", at, at, at, turned, {"bottom": 0})
+                meshes = [{"name": name, "file": str(folder / f"{name}.vtu"), "velocity": [0, 0, speed],
+                           "material": dict(material(0.3), type="neo_hookean")} for name, speed in (("a", 0), ("b", -1))]
+                return {"model": {"type": "solids", "meshes": meshes},
+                        "interfaces": [interface(side, {"a": "top", "b": "bottom"}, "contact", {"restitution": restitution})],
+                        "time": {"cfl": 0.7, "end": 0.2}, "output": {"watch": ["b.foot"], "every": 1, "balance": True}}
+            summary, rows = run(program, scene)
+            energy = [float(row["balance.kinetic"]) + float(row["balance.internal"]) for row in rows]
+            print(f"| tilted | {side} | {place} | e {restitution} | energy at most {max(energy) / energy[0]:.7f}, at the end "
+                  f"{energy[-1] / energy[0]:.6f} | unsolved {summary['coupling']['steps_unconverged']} of {summary['steps']} |", flush=True)
+
+
+def stack(program, side):
+    """Blocks have 4 and 6 elements in turn; side: whose faces are secondary, dual fine: the finer."""
+    high, count = 0.25, 4
+    for factor in (0.90, 0.97, 1.03):
+        at = numpy.cumsum([0] + [factor / (2 * (count + 1 - k)) for k in range(1, count + 1)])
+        blocks = [{"name": f"b{k}", "corner": [x, 0, k * high], "size": [1, 0.25, high], "elements": [6 - 2 * (k % 2), 1, 2],
+                   "material": {"type": "neo_hookean", "young": 1e8, "poisson": 0.3, "density": 1e3}} for k, x in enumerate(at)]
+        joints = []
+        for k in range(count):
+            finer = 6 - 2 * (k % 2) == 6  # the lower one
+            faces = {"a": f"b{k}.z_max", "b": f"b{k + 1}.z_min"}
+            own, other = ("a", "b") if finer != side.endswith("coarse") else ("b", "a")
+            joints.append({"name": f"j{k}", "law": "coulomb", "parameters": {"friction": 0.5}, "nodes": faces[own],
+                           "against": {"surface": faces[other]}
+                           | ({"discretization": "dual_mortar"} if side.startswith("dual") else {})})
+        summary, rows = run(program, {
+            "model": {"type": "blocks", "blocks": blocks}, "interfaces": joints, "time": {"cfl": 0.8, "end": 3.0},
+            "loads": [{"type": "motion", "nodes": "b0.z_min"}, {"type": "damping", "rate": 1},
+                      {"type": "gravity", "acceleration": [0, 0, -10], "history": {"rows": [[0, 0], [0.3, 1]], "smooth": True}}],
+            "output": {"watch": [f"b{k}.z_max" for k in range(1, count + 1)], "every": 100}})
+        last = numpy.array([float(rows[-1][key]) for key in rows[-1] if key.endswith(".u2")])
+        print(f"| stack | {side} | {factor} of the limit | moved down by {-last.min():.4f}: "
+              f"{'falls' if last.min() < -0.05 else 'stands'} | iterations {summary['coupling']['sweeps'] / summary['steps']:.0f}, "
+              f"{summary['coupling']['sweeps_max']} at most | unsolved {summary['coupling']['steps_unconverged']} of "
+              f"{summary['steps']} |", flush=True)
+
+
+def shear(program, side):
+    for friction in (0, 0.1, 0.3, 1, 10):
+        grow = {"rows": [[0, 0], [0.2, 1e3]], "smooth": True}
+        made = {"model": {"type": "blocks", "blocks": [block("a", 0, 6, 0, 0.3), block("b", 0.5, 10, 0, 0.3)]},
+                "interfaces": [interface(side, {"a": "z_max", "b": "z_min"}, "coulomb", {"friction": friction})],
+                "time": {"cfl": 0.9, "end": 0.1}, "output": {"every": 1000000},
+                "loads": [{"type": "motion", "nodes": "a.z_min"}, {"type": "damping", "rate": 60},
+                          {"type": "pressure", "surface": "b.z_max", "history": grow},
+                          {"type": "force", "nodes": "b.z_max", "direction": [0.2, 0, 0], "total": True, "history": grow}]}
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        summary, _ = run(program, made)
+        seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+        coupling = summary["coupling"]
+        print(f"| shear | {side} | friction {friction} | iterations {coupling['sweeps'] / summary['steps']:.0f}, "
+              f"{coupling['sweeps_max']} at most | unsolved {coupling['steps_unconverged']} of {summary['steps']} | "
+              f"{seconds:.2f} s, interfaces {summary['seconds']['interfaces']:.2f} s |", flush=True)
+
+
 def picture(program, file):
     from case_script import save
     from matplotlib import pyplot
@@ -346,7 +423,8 @@ def picture(program, file):
     save(figure, file)
 
 
-CASES = {"hertz": hertz, "sliding": sliding, "bowl": bowl, "bonds": bonds, "impact": impact, "corners": corners}
+CASES = {"hertz": hertz, "sliding": sliding, "bowl": bowl, "bonds": bonds, "impact": impact, "corners": corners,
+         "tilted": tilted, "stack": stack, "shear": shear}
 
 
 def main():
