@@ -56,7 +56,7 @@ AREAS = {
                                     "ctest python.solver_machine"]),
     "check": Area("api/check", ["check_test"]),
     "host": Area("host_mock/host", ["host_test", "bars_test", "mesh_test", "bodies_test", "scene_keys_test", "prestress_test",
-                                    "proximity_filter_test", "program_test"]),
+                                    "proximity_filter_test", "program_test", "faults_test"]),
     "results": Area("host_mock/host/results", ["bodies_test", "fields_test", "program_test"]),
     "study": Area("host_mock/instruments/study", ["converge_test"]),
     "stress": Area("host_mock/instruments/stress", ["stress_test"]),
