@@ -72,6 +72,17 @@ TEST(ProximityFilter, LeavesOutBondsThatBroke) {
   EXPECT_LT(tally.active, tally.skipped);
 }
 
+// The axes of a memory follow the normal far away, too: a point flies past a sphere.
+TEST(ProximityFilter, TurnsAxesOutOfReach) {
+  expect_same_bits(json::parse(R"({
+    "model": {"type": "points", "dimension": 3, "points": [
+      {"mass": 1, "position": [0.6, 0, 2.8], "velocity": [-3, 30, -2]}]},
+    "time": {"dt": 1e-3, "end": 0.1},
+    "interfaces": [{"law": "penalty", "nodes": "all",
+                    "parameters": {"stiffness": 1e4, "friction": 0.5, "tangential_stiffness": 1e4},
+                    "obstacle": {"type": "sphere", "center": [0, 0, 0], "radius": 1}}]})"));
+}
+
 // Two points fly towards each other: they close twice as fast as either flies. From every distance, so that
 // some meet just when the horizon ends.
 TEST(ProximityFilter, SeesBothBodiesFly) {

@@ -56,7 +56,7 @@ AREAS = {
                                     "ctest python.solver_machine"]),
     "check": Area("api/check", ["check_test"]),
     "host": Area("host_mock/host", ["host_test", "bars_test", "mesh_test", "bodies_test", "scene_keys_test", "prestress_test",
-                                    "proximity_filter_test", "program_test"]),
+                                    "proximity_filter_test", "program_test", "faults_test"]),
     "results": Area("host_mock/host/results", ["bodies_test", "fields_test", "program_test"]),
     "stress": Area("host_mock/instruments/stress", ["stress_test"]),
     "cli": Area("host_mock/cli", ["program_test", "scene_keys_test", "bench_test"]),
@@ -118,6 +118,12 @@ def has_bare_comma(text):
     return False
 
 
+def stands_apart(before, is_statement):
+    """Whether an expression or a statement may begin behind this text."""
+    before = re.sub(r"(\s*//[^\n]*)*\s*$", "", before)
+    return bool(re.search(r"[;{})]$|\belse$" if is_statement else r"[^\w.>]$|\breturn$|[^-]>$", before))
+
+
 def switched(mutant):
     """Both forms of an expression, or of a statement."""
     number, before, after = mutant["number"], mutant["from"], mutant["to"]
@@ -142,6 +148,8 @@ def with_mutants(file, mutants):
         if begin < end:
             raise ValueError(f"{one['name']}, {other['name']}: at the same place")
     for (begin, end), mutant in reversed(places):
+        if not file.endswith(".py") and not stands_apart(text[:begin], mutant["from"].endswith(";")):
+            raise ValueError(f"{mutant['name']}: begins within an expression or a statement: {mutant['from']}")
         text = text[:begin] + switched(mutant) + text[end:]
     return text if file.endswith(".py") else f'#include "{TREE / "mutant_switch.hpp"}"\n' + text
 
