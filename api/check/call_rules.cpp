@@ -117,6 +117,8 @@ const Wrong wrong_calls[] = {
     {"an impulse with node_stride 0", [](ilaw_batch& b) { b.impulse.node_stride = 0; }, false},
     {"a v_free with component_stride 0", [](ilaw_batch& b) { b.v_free.component_stride = 0; }, false, 0,
      false, true},
+    {"a normal with component_stride 0", [](ilaw_batch& b) { b.normal.component_stride = 0; }, false,
+     ILAW_INPUT_NORMAL, false, true},
     {"gap null", [](ilaw_batch& b) { b.gap = {}; }, false, ILAW_INPUT_GAP},
     {"v_previous null", [](ilaw_batch& b) { b.v_previous = {}; }, false, ILAW_INPUT_V_PREVIOUS},
     {"area null", [](ilaw_batch& b) { b.area = {}; }, false, ILAW_INPUT_AREA},
