@@ -149,9 +149,12 @@ bool calls_refused(const Trial& trial, Draw& draw) {
       nodes.expect_refused(
           {name + " with node_stride 0", [=](ilaw_batch& b) { (b.*member).node_stride = 0; }});
   });
-  if (trial.setup.dimension > 1)
+  if (trial.setup.dimension == 1) return true;
+  nodes.expect_refused(
+      {"v_free with component_stride 0", [](ilaw_batch& b) { b.v_free.component_stride = 0; }});
+  if (trial.reads(ILAW_INPUT_NORMAL))
     nodes.expect_refused(
-        {"v_free with component_stride 0", [](ilaw_batch& b) { b.v_free.component_stride = 0; }});
+        {"normal with component_stride 0", [](ilaw_batch& b) { b.normal.component_stride = 0; }});
   return true;
 }
 

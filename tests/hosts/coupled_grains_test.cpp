@@ -148,30 +148,6 @@ TEST(CoupledRolling, RollerDrivesTheBall) {
   }
 }
 
-TEST(CoupledRolling, TwoBallsKeepTheirMomenta) {
-  for (const double h : steps) {
-    Grains two(resistance(0.3, 0.02, 0.01), h);
-    two.pull = {};
-    two.reach = 1e-9;
-    two.add_grain(0.7, 0.2, {}, {0.3, -0.2, 0.9}, {3.0, -1.0, 2.0});
-    two.add_grain(0.4, 0.5, {0.42, 0.0, 0.56}, {-0.5, 0.4, -0.6}, {-2.0, 5.0, 4.0});
-    const Vector x_0 = two.body[0].x, x_1 = two.body[1].x;
-    const auto angular = [&] {
-      const auto &a = two.body[0], &b = two.body[1];
-      return cross(x_0, a.mass * a.v) + cross(x_1, b.mass * b.v) + a.inertia * a.w + b.inertia * b.w;
-    };
-    const Vector p = two.momentum(), l = angular();
-    const double before = two.kinetic();
-    two.advance();
-    ASSERT_GT(length(two.contact[0].moment), 1e-3);
-    EXPECT_LE(length(two.momentum() - p), 1e-15);
-    EXPECT_LE(length(angular() - l), 1e-15);
-    EXPECT_NEAR(two.kinetic() - before, two.work, 1e-15);
-    EXPECT_NEAR(two.work, -two.dissipated, 1e-15);
-    EXPECT_LT(two.work, 0.0);
-  }
-}
-
 // Grains on each other that spin about the vertical stop by twisting friction alone: their velocities are
 // solved from the start, their spins are not.
 TEST(CoupledRolling, ColumnStopsTwisting) {

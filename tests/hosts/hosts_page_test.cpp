@@ -51,7 +51,7 @@ TEST(HostsPage, QuotesCodeThatIsBuiltAndRun) {
   const std::map<std::string, std::string> sources{
       {"c", read(ILAW_MINIMAL "/blocks.c") + read(ILAW_MINIMAL "/grains.c") +
                 read(ILAW_EXAMPLES "/../device/points.c")},
-      {"cpp", read(ILAW_EXAMPLES "/blocks.cpp") + read(ILAW_EXAMPLES "/adaptor_test.cpp") +
+      {"cpp", read(ILAW_EXAMPLES "/blocks.cpp") + read(ILAW_EXAMPLES "/schemes_test.cpp") +
                   read(ILAW_MINIMAL "/minimal.cpp")},
       {"fortran", read(ILAW_EXAMPLES "/blocks.f90")},
       {"python", read(ILAW_EXAMPLES "/python/blocks.py")}};

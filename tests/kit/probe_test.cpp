@@ -5,6 +5,7 @@
 #include "support/small_batch.hpp"
 
 #include <memory>
+#include <numeric>
 
 namespace ilaw::testing {
 namespace {
@@ -331,6 +332,24 @@ TEST(Promises, ThatALawBreaksAreRefusedAtTheirNode) {
       EXPECT_EQ(nodes.r[static_cast<std::size_t>(node)][0], 0.0);
       EXPECT_EQ(nodes.status[static_cast<std::size_t>(node)], outputs ? ILAW_BAD_INPUT : 0);
     }
+}
+
+// g++ 12 lost such an assignment.
+TEST(Input, MayBeCopiedAsItIs) {
+  const ilaw::interface law = make_tested_law("copy_probe", SetupBuilder({}));
+  std::vector<double> v(3 * 21), r(v.size());
+  std::iota(v.begin(), v.end(), 1.0);
+  const double h = 1.0, gap = 0.0;
+  ilaw_batch b{};
+  b.struct_size = sizeof b;
+  b.node_count = 21;
+  b.velocity_step = b.position_step = 1e-3;
+  b.v_free = ilaw::input(v.data(), 3, 1);
+  b.delassus = ilaw::input(&h, 0, 0);
+  b.gap = ilaw::input(&gap, 0, 0);
+  b.impulse = ilaw::output(r.data(), 3, 1);
+  ASSERT_EQ(law.evaluate(b), ILAW_OK);
+  EXPECT_EQ(r, v);
 }
 
 }  // namespace

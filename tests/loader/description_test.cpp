@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <description.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -125,6 +126,26 @@ TEST_P(FaultyDescription, IsNamedWithWhatWasFoundAndExpected) {
 }
 
 const Fault faulty_descriptions[] = {
+    {"SmallLibrary", [](Description& d) { d.plugin.struct_size = 8; },
+     "the description has struct_size 8, expected at least 64 and at most 4096"},
+    {"OtherMajor", [](Description& d) { d.plugin.abi_major = 2; },
+     "ABI version 2.0, expected major version 1"},
+    {"NoLaws", [](Description& d) { d.plugin.law_count = 0; }, "law_count is 0, expected at least 1"},
+    {"LawTwice", [](Description& d) { d.plugin.law_count = 2; }, "law 'bond' is declared twice"},
+    {"SmallLaw", [](Description& d) { d.law.struct_size = 120; },
+     "law 0: law has struct_size 120, expected at least 160 and at most 4096"},
+    {"NoEvaluate", [](Description& d) { d.law.evaluate = nullptr; },
+     "law 'bond': function 'evaluate' is null, expected a function"},
+    {"TitleNowhere", [](Description& d) { d.law.title = static_cast<const char*>(no_address); },
+     "law 'bond': title is no readable text of at most 64 KiB"},
+    {"Overlong", [](Description& d) { d.law.title = "\xc0\xaf"; },
+     "law 'bond': title has bytes that are no UTF-8 or control characters"},
+    {"ManyParameters", [](Description& d) { d.law.parameter_count = 4000000000U; },
+     "law 'bond': parameters has 4000000000 entries, expected at most 10000"},
+    {"UnknownForm", [](Description& d) { d.law.delassus_forms = 65; },
+     "law 'bond': delassus_forms is 65, expected only the bits of 31"},
+    {"DefaultAbove", [](Description& d) { d.number.default_value = 2.0; },
+     "law 'bond': parameter 'strength': default 2 lies outside its own range"},
     {"NoVendor", [](Description& d) { d.plugin.vendor = nullptr; }, "vendor is null, expected a text"},
     {"LawsNull", [](Description& d) { d.plugin.laws = nullptr; }, "laws is null, expected 1 entries"},
     {"LawNull", [](Description& d) { d.laws[0] = nullptr; }, "law 0: law is null"},
@@ -400,6 +421,18 @@ TEST(FaultyInstance, IsNamedWithWhatWasFoundAndExpected) {
   EXPECT_EQ(said_of([](Instance& i) { i.first.kind = ILAW_KIND_AXIS; }), "");
   EXPECT_EQ(said_of([](Instance& i) { i.second.count = 3; }),
             at + "state variable 'second': count is 3, expected 2");
+  EXPECT_EQ(said_of([](Instance& i) { i.first.kind = 77; }),
+            at + "state variable 'first': kind is 77, expected at most 4");
+  EXPECT_EQ(said_of([](Instance& i) { i.first.flags = 256; }),
+            at + "state variable 'first': flags is 256, expected only the bits of 1");
+  EXPECT_THAT(said_of([](Instance& i) {
+                i.first.kind = ILAW_KIND_HISTORY;
+                i.first.count = UINT64_MAX - 1;
+                i.info.state_size = 0;  // what the sum wraps to
+              }),
+              testing::StartsWith(at + "state variable 'first': count is 18446744073709551614"));
+  EXPECT_EQ(said_of([](Instance& i) { i.info.capabilities = 1U << 20; }),
+            at + "capabilities is 1048576, expected only the bits of 7");
   EXPECT_EQ(said_of([](Instance& i) { i.info.state_size = 6; }),
             at + "state_size is 6, expected the sum of the counts, 5, and at most 1048576");
   EXPECT_EQ(said_of([](Instance& i) {

@@ -78,58 +78,21 @@ def roll(dt):
     return {"from": rows[rolls][0, 0], "v": rows[-1, 1], "height": O.bodies[0].state.pos[2]}
 
 
-def incline(tangent, mu):
-    """A slope of this tangent: rolls with 5/7 g sin, or slides with g (sin - mu cos). Its acceleration."""
-    g, angle = 10.0, np.arctan(tangent)
-    gravity = (g * np.sin(angle), 0, -g * np.cos(angle))
-    scene("coulomb", [((0, 0, 0.5), 0.5, (0, 0, 0))], [(2, 1)], gravity, 1e-3, friction=mu)
-    O.run(20, True)
-    before = velocity()[0]
-    O.run(80, True)
-    return {"a": (velocity()[0] - before) / 0.08, "g": g, "angle": angle}
-
-
-# A ball of 5 cm on a wall, with rolling and twisting resistance, as in tests/laws/rolling.
-BALL = ((0, 0, 0.05), 0.05, (0, 0, 0))
+# Of balls of 5 cm. That a ball rolls out is tested by examples/roll.py.
 RESISTANCE = {"friction": 0.5, "rolling_friction": 0.002, "twisting_friction": 0.001}
-
-
-def ball(dt, velocity=0.0, spin=(0, 0, 0), slope=0.0):
-    gravity = (9.81 * np.sin(slope), 0, -9.81 * np.cos(slope))
-    scene("rolling", [BALL], [(2, 1)], gravity, dt, **RESISTANCE)
-    state = O.bodies[0].state
-    state.vel, state.angVel = (velocity, 0, 0), spin
-    return state
-
-
-def motion(state):
-    return [*state.vel, *(0.05 * state.angVel)]
-
-
-def roll_out(dt):
-    """Rolls from 0.5 m/s until it rests: the distance, what is left, and the part of the energy that the law took."""
-    state = ball(dt, 0.5, (0, 10, 0))
-    O.run(round(2 / dt), True)
-    return {"x": state.pos[0], "left": motion(state), "lost": float(contacts.energy.sum()) / (0.175 * state.mass)}
-
-
-def resisted_slope(dt, of_limit):
-    """A slope near tan = rho/R: how far it rolls within half a second, and its velocity."""
-    state = ball(dt, slope=of_limit * np.arctan(0.04))
-    steps = round(0.5 / dt)
-    O.run(steps, True)
-    return {"x": state.pos[0], "motion": motion(state), "time": steps * dt}
 
 
 def top(dt):
     """Spins on a wall that spins the other way: its spin at 0.7 of the time in which it takes the wall's, and then."""
     stops = 0.4 * 0.05**2 * 15 / (0.001 * 9.81)
-    state, early = ball(dt, spin=(0, 0, 10)), round(0.7 * stops / dt)
+    scene("rolling", [((0, 0, 0.05), 0.05, (0, 0, 0))], [(2, 1)], (0, 0, -9.81), dt, **RESISTANCE)
+    state, early = O.bodies[0].state, round(0.7 * stops / dt)
+    state.angVel = (0, 0, 10)
     O.bodies[1].state.angVel = (0, 0, -5)
     O.run(early, True)
     spin = state.angVel[2]
     O.run(round(stops / dt) + 1 - early, True)
-    return {"spin": spin, "expected": 10 - 15 * early * dt / stops, "end": motion(state)}
+    return {"spin": spin, "expected": 10 - 15 * early * dt / stops, "end": [*state.vel, *(0.05 * state.angVel)]}
 
 
 def gears(dt):
@@ -228,8 +191,6 @@ def refused():
 
 STEPS = (2e-3, 1.3e-3, 1.7e-3)
 figures = {
-    "roll out": {str(dt): roll_out(dt) for dt in STEPS},
-    "resisted slopes": {str(dt): [resisted_slope(dt, part) for part in (0.98, 1.02)] for dt in STEPS},
     "tops": {str(dt): top(dt) for dt in STEPS},
     "gears": {str(dt): gears(dt) for dt in STEPS},
     "turntables": {str(dt): turntable(dt) for dt in STEPS},
@@ -238,8 +199,6 @@ figures = {
     "changed": changed(),
     "collisions": {str(e): collision(e) for e in (0.0, 0.5, 1.0)},
     "rolls": {str(dt): roll(dt) for dt in (2e-3, 1.3e-3, 1.7e-3)},
-    "rolling slope": incline(0.3, 0.1),
-    "sliding slope": incline(0.7, 0.1),
     "column": column(),
     "goes on": goes_on(),
     "refused": refused(),

@@ -56,30 +56,6 @@ def test_sliding_becomes_rolling(figures):
         assert found["height"] == pytest.approx(0.5, abs=1e-14), dt
 
 
-def test_a_slope_is_rolled_or_slid_down(figures):
-    rolled, slid = figures["rolling slope"], figures["sliding slope"]
-    assert rolled["a"] == pytest.approx(5 / 7 * rolled["g"] * np.sin(rolled["angle"]), rel=1e-9)
-    assert slid["a"] == pytest.approx(slid["g"] * (np.sin(slid["angle"]) - 0.1 * np.cos(slid["angle"])), rel=1e-9)
-
-
-# While it rolls 7/5 a = -rho g/R. Velocities lie half a step before places: the distance is h v0/2 less.
-def test_a_ball_rolls_out(figures):
-    a = 0.002 * 9.81 / (1.4 * 0.05)
-    for dt, found in figures["roll out"].items():
-        assert found["x"] == pytest.approx(0.125 / a - float(dt) / 4, abs=0.2 * float(dt) ** 2), dt
-        np.testing.assert_allclose(found["left"], 0, atol=1e-13, err_msg=dt)
-        assert found["lost"] == pytest.approx(1, abs=1e-11), dt
-
-
-def test_rolling_resistance_holds_a_ball_on_a_slope_up_to_a_limit(figures):
-    above_limit = 1.02 * np.arctan(0.04)
-    a = 9.81 / 1.4 * (np.sin(above_limit) - 0.04 * np.cos(above_limit))
-    for dt, (below, above) in figures["resisted slopes"].items():
-        assert max(map(abs, [below["x"], *below["motion"]])) < 1e-14, dt
-        speed = a * above["time"]
-        np.testing.assert_allclose(above["motion"], [speed, 0, 0, 0, speed, 0], atol=1e-11, err_msg=dt)
-
-
 def test_a_top_takes_the_spin_of_its_wall(figures):
     for dt, found in figures["tops"].items():
         assert found["spin"] == pytest.approx(found["expected"], rel=1e-10), dt

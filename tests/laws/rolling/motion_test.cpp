@@ -1,4 +1,5 @@
-// A ball on a plane under gravity, in central differences: closed forms of rolling and twisting resistance.
+// A ball on a plane under gravity, in central differences. That it rolls out, spins down and stays on a slope
+// is tested in hosts: tests/hosts/ball_test.cpp.
 #include "laws/rolling/ball.hpp"
 
 namespace ilaw::testing {
@@ -6,25 +7,6 @@ namespace {
 
 // Three steps that share no factor.
 constexpr double steps[] = {1e-4, 3.7e-4, 7.3e-4};
-
-// While it rolls, M a = -F, (2/5) M R a = F R - rho M g: 7/5 a = -rho g/R, and the ball stops after
-// (7/5) v0^2 R/(2 rho g). In steps the position is a sum of the velocities after them: h v0/2 less.
-TEST(Ball, RollsOut) {
-  constexpr double rho = 0.002, v0 = 1.0;
-  constexpr double closed = 1.4 * v0 * v0 * Ball::radius / (2.0 * rho * Ball::gravity);
-  static_assert(closed > 1.7838939 && closed < 1.7838941);
-  for (const double h : steps) {
-    Ball ball(resistance(0.5, rho, 0.001), h);
-    ball.v = {v0, 0.0, 0.0};
-    ball.w = {0.0, v0 / Ball::radius, 0.0};
-    const double at_start = ball.kinetic_energy();
-    ball.run(6.0);
-    EXPECT_NEAR(ball.x[0], closed - 0.5 * h * v0, 0.2 * h * h) << "h " << h;
-    EXPECT_LE(length(ball.v) + Ball::radius * length(ball.w), 1e-14);
-    EXPECT_NEAR(ball.dissipated, at_start, 1e-12 * at_start);
-    EXPECT_EQ(ball.status(), ILAW_STICK);
-  }
-}
 
 // Friction turns 2/7 of the momentum into spin, whatever its coefficient (Euler 1758).
 TEST(Ball, SlidesIntoRolling) {
@@ -37,40 +19,6 @@ TEST(Ball, SlidesIntoRolling) {
     EXPECT_NEAR(ball.v[0], 5.0 / 7.0, 1e-12) << "h " << h;
     EXPECT_NEAR(Ball::radius * ball.w[1], 5.0 / 7.0, 1e-12) << "h " << h;
     EXPECT_EQ(ball.status(), ILAW_STICK);
-  }
-}
-
-// I dw/dt = -tau M g: with tau = mu_t R it stops after (2/5) R^2 w0/(tau g) = 2 R w0/(5 mu_t g).
-TEST(Ball, SpinsDown) {
-  constexpr double twist = 0.02, w0 = 30.0;  // mu_t
-  constexpr double closed = 2.0 * Ball::radius * w0 / (5.0 * Ball::gravity * twist);
-  for (const double h : steps) {
-    Ball ball(resistance(0.5, 0.002, twist * Ball::radius), h);
-    ball.w = {0.0, 0.0, w0};
-    int count = 0;
-    for (; ball.w[2] > 1e-12 && count < 100000; ++count) {
-      ball.step();
-      const double expected = std::max(0.0, w0 * (1.0 - (count + 1) * h / closed));
-      ASSERT_NEAR(ball.w[2], expected, 1e-10) << "h " << h;
-    }
-    EXPECT_NEAR(count * h, closed, h);
-    EXPECT_LE(length(ball.v), 1e-15);
-  }
-}
-
-// rho M g cos holds R M g sin; above, 7/5 a = g (sin - rho/R cos).
-TEST(Ball, StaysOnASlopeBelowTheLimit) {
-  constexpr double rho = 0.002;
-  const double limit = std::atan(rho / Ball::radius);
-  for (const double h : steps) {
-    Ball below(resistance(0.5, rho, 0.0), h, 0.98 * limit), above(resistance(0.5, rho, 0.0), h, 1.02 * limit);
-    below.run(1.0);
-    EXPECT_NEAR(below.x[0], 0.0, 1e-16) << "h " << h;
-    const double a = 1.02 * limit;
-    const double expected = (Ball::gravity / 1.4) * (std::sin(a) - std::cos(a) * rho / Ball::radius);
-    above.run(1.0);
-    const double time = h * static_cast<double>(std::lround(1.0 / h));
-    EXPECT_NEAR(above.v[0], expected * time, 1e-11) << "h " << h;
   }
 }
 

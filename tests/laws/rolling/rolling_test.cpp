@@ -94,24 +94,6 @@ TEST(Rolling, IsTheSameWithRolesSwapped) {
       ASSERT_LE(length((nodes.*of)[i] + (swapped.*of)[i]), 1e-13) << "node " << i;
 }
 
-TEST(Rolling, IsCoulombWhereNothingResistsSpins) {
-  constexpr std::size_t count = 1000;
-  Spheres nodes(resistance(friction, 0.0, 0.0), count);
-  nodes.draw(8);
-  ASSERT_EQ(nodes.evaluate(), ILAW_OK);
-  const ilaw::interface coulomb =
-      make_law("coulomb",
-               SetupBuilder({{{"friction", friction}}, {}}, 3, ILAW_DELASSUS_TRANSVERSE, ILAW_FRAME_GLOBAL));
-  std::vector<Vector> r(count);
-  ilaw_batch b = nodes.batch();
-  b.impulse = ilaw::output(r[0].data(), 3, 1);
-  ASSERT_EQ(coulomb.evaluate(b, nullptr), ILAW_OK);  // reads the first two numbers of H alone
-  for (std::size_t i = 0; i < count; ++i) {
-    ASSERT_LE(length(nodes.r[i] - r[i]), 1e-14) << "node " << i;
-    ASSERT_EQ(nodes.m[i], (Vector{})) << "node " << i;
-  }
-}
-
 TEST(Rolling, HoldsWhereResistancesAreInfinite) {
   constexpr std::size_t count = 1000;
   constexpr double inf = std::numeric_limits<double>::infinity();
