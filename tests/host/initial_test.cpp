@@ -13,26 +13,6 @@ json block(const char* material, double poisson) {
   return scene;
 }
 
-// Central difference gives a cos(W n h) exactly, sin(W h/2) = w h/2.
-TEST(Initial, DisplacementOfASpringSwingsAsACosine) {
-  json scene = json::parse(R"({"model": {"type": "points", "dimension": 2, "points": [
-      {"mass": 2, "position": [0, 0], "stiffness": [8, 18]}, {"mass": 1, "position": [1, 0]}]},
-    "time": {"end": 3}, "initial": [{"nodes": [0], "displacement": [0.1, 0.2]},
-                                    {"nodes": [0], "displacement": [0, 0.1]}], "interfaces": []})");
-  for (const double h : {0.07, 0.11, 0.13}) {
-    scene["time"]["dt"] = h;
-    auto [read, integrator] = simulation_of(scene);
-    while (integrator.steps() < read.steps) {
-      integrator.step();
-      const double n = static_cast<double>(integrator.steps());
-      EXPECT_NEAR(integrator.displacement()[0], 0.1 * std::cos(2.0 * std::asin(h) * n), 1e-13) << h;
-      EXPECT_NEAR(integrator.displacement()[1], 0.3 * std::cos(2.0 * std::asin(1.5 * h) * n), 1e-13) << h;
-    }
-    EXPECT_EQ(integrator.displacement()[2], 0.0) << "h " << h;
-    EXPECT_LT(integrator.energy().balance_error, 1e-13) << "h " << h;
-  }
-}
-
 // A rotation strains nothing, about whatever point: a body with large displacements stays as it is.
 TEST(Initial, RotationLeavesALargeBodyAtRest) {
   json scene = block("neo_hookean", 0.3);

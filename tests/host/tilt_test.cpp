@@ -66,26 +66,6 @@ TEST(Tilt, SlidesWhereTheAngleIsThatOfFriction) {
         }
 }
 
-// A sticking point goes round with the plane, to rounding, whatever the step; the work is its height's.
-TEST(Tilt, CarriesWhatSticks) {
-  for (const int dimension : {2, 3})
-    for (const double dt : {0.02, 0.0137, 0.0059}) {
-      const double s = 0.8;
-      json source = on_plane(dimension, s, 50.0, dt);
-      source["interfaces"][0]["obstacle"]["path"] =
-          dimension == 2 ? json{{0, 0, 0}, {4, 0.4, 0.2}} : json{{0, 0, 0, 0}, {4, 0.4, 0.2, 0}};
-      auto [scene, integrator] = simulation_of(source);
-      while (integrator.steps() < scene.steps) {
-        integrator.step();
-        const double t = integrator.time(), angle = rate * t;
-        ASSERT_NEAR(integrator.displacement()[0], 0.1 * t + s * (std::cos(angle) - 1.0), 1e-13) << t;
-        ASSERT_NEAR(integrator.displacement()[1], 0.05 * t + s * std::sin(angle), 1e-13) << t;
-      }
-      EXPECT_LT(integrator.energy().balance_error, 1e-13);
-      EXPECT_NEAR(integrator.energy().external_work, -2.0 * fall * integrator.displacement()[1], 0.3 * dt);
-    }
-}
-
 // A plane that swings up to a point far from its axis finds it, with and without the filter, to the same
 // bits.
 TEST(Tilt, IsNotMissedByTheFilter) {
