@@ -237,67 +237,6 @@ TEST(Thermal, WritesTemperaturesToFields) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(Thermal, RefusesAStepAboveThatOfConduction) {
-  const Bar bar{.elements = 5};
-  const double stable = bar.stable_step();
-  EXPECT_NO_THROW(scene_of(scene_with({column(bar, "tread", 0)}, stable, 1.0).dump()));
-  const std::string said = refusal_of(scene_with({column(bar, "tread", 0)}, 1.001 * stable, 1.0));
-  EXPECT_NE(said.find("the stable step of conduction in 'tread'"), std::string::npos) << said;
-  json scene = scene_with({column(bar, "tread", 0)}, 1.001 * stable, 1.0);
-  scene["model"]["blocks"][0].erase("name");
-  EXPECT_NE(refusal_of(scene).find("conduction in 'block0'"), std::string::npos);
-  scene["time"] = {{"cfl", 0.5}, {"end", 1.0}};
-  EXPECT_NEAR(scene_of(scene.dump()).dt, 0.5 * stable, 1e-15);
-}
-
-TEST(Thermal, RefusesTwoTemperaturesOfANode) {
-  json scene = sliding_point(0.01, 0.5);
-  scene["interfaces"][0]["law"] = "conductance";
-  scene["interfaces"][0]["parameters"] = {{"conductance", 1}};
-  EXPECT_NE(refusal_of(scene).find("/interfaces/0/obstacle: key 'temperature' is missing"),
-            std::string::npos);
-  scene["interfaces"][0]["obstacle"]["temperature"] = {{0, 300}, {1, 320}};
-  EXPECT_EQ(refusal_of(scene), "not refused");
-  scene["fields"] = {{"temperature", 300}};
-  EXPECT_NE(refusal_of(scene).find("/fields/temperature: found a value, expected none"), std::string::npos);
-  scene.erase("fields");
-  scene["interfaces"][0]["parameters"]["temperature"] = 300;
-  EXPECT_NE(refusal_of(scene).find("/interfaces/0/parameters/temperature: found a value"), std::string::npos);
-}
-
-// A field is for interfaces whose bodies have no temperature.
-TEST(Thermal, TakesFieldsInterfaceByInterface) {
-  json scene = sliding_point(0.01, 0.5);
-  scene["model"]["points"].push_back({{"mass", 2}, {"position", {1, 0}}});
-  scene["interfaces"][0]["nodes"] = {0};
-  scene["interfaces"].push_back({{"law", "conductance"},
-                                 {"nodes", {1}},
-                                 {"parameters", {{"conductance", 1}}},
-                                 {"obstacle", scene["interfaces"][0]["obstacle"]}});
-  scene["fields"] = {{"temperature", 300}, {"counterpart_temperature", 310}};
-  EXPECT_EQ(refusal_of(scene), "not refused");
-  scene["model"]["points"][1]["thermal"] = scene["model"]["points"][0]["thermal"];
-  scene["interfaces"][1]["obstacle"]["temperature"] = 310;
-  EXPECT_NE(refusal_of(scene).find("/fields/temperature: found a value, expected none: the nodes of "
-                                   "'interface1' have temperatures of their own, which its law reads"),
-            std::string::npos)
-      << refusal_of(scene);
-}
-
-TEST(Thermal, WarnsOfATemperatureThatNoLawReads) {
-  json scene = sliding_point(0.01, 0.5);
-  EXPECT_TRUE(scene_of(scene).warnings.empty());
-  scene["interfaces"][0]["obstacle"]["temperature"] = 310;
-  const std::vector<std::string> warnings = scene_of(scene).warnings;
-  ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_EQ(warnings[0],
-            "/interfaces/0/obstacle/temperature: found 310, which law 'coulomb' does not read: nothing is "
-            "conducted");
-  scene["interfaces"][0]["law"] = "conductance";
-  scene["interfaces"][0]["parameters"] = {{"conductance", 1}};
-  EXPECT_TRUE(scene_of(scene).warnings.empty());
-}
-
 // The block of docs/results/tyre_block.md.
 TEST(Thermal, HeatsTheShippedTyreBlock) {
   json scene = read_scene_source(scene_files::named("tyre_block.json"));
