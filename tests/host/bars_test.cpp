@@ -162,8 +162,6 @@ TEST(ElasticBar, IsAsNearItsExactReboundAsPublished) {
   }
 }
 
-// ---- a glued bar ----------------------------------------------------------------------------------------
-
 // ---- long runs ------------------------------------------------------------------------------------------
 
 // A bar between two walls, thousands of impacts.
@@ -181,6 +179,38 @@ TEST(BarBetweenWalls, ClosesItsBalanceOverAMillionSteps) {
   auto [scene, integrator] = run_to_end(bar_between_walls(0.9, 10, 0.9, 0.9 * 1e6 / 10));
   EXPECT_GE(integrator.steps(), 1000000);
   EXPECT_LE(integrator.energy().balance_error, 1e-10);
+}
+
+// ---- bars that start deformed ---------------------------------------------------------------------------
+
+// A bar of E = S = L = 1, moved by a at its left and b at its right end, has the strain b - a everywhere: the
+// energy (b - a)^2/2 at the start, and forces of b - a on its ends alone, which give half a step's velocity.
+TEST(InitialDisplacement, IsLinearAlongTheBar) {
+  for (const auto& [a, b] : {std::pair{0.3, -0.1}, std::pair{-0.2, 0.4}, std::pair{0.7, 0.7}}) {
+    json source = shipped("held_rod");
+    source.erase("exact");
+    source["loads"] = json::array();
+    source["model"]["bars"][0]["elements"] = 7;
+    source["initial"] = {{{"displacement", {a}}, {"gradient", {{b - a}}}}};
+    source["interfaces"] = json::array();
+    auto [scene, integrator] = simulation_of(source);
+    const double half_mass = 0.5 / 7.0, kick = 0.5 * scene.dt * (b - a) / half_mass;
+    for (int k = 0; k <= 7; ++k) {
+      EXPECT_NEAR(integrator.displacement()[k], a + (b - a) * k / 7.0, 1e-15) << k;
+      EXPECT_NEAR(integrator.velocity()[k], k == 0 ? kick : k == 7 ? -kick : 0.0, 1e-13) << k;
+    }
+    EXPECT_NEAR(integrator.energy().potential, 0.5 * (b - a) * (b - a), 1e-15);
+    while (integrator.steps() < scene.steps) integrator.step();
+    EXPECT_LE(integrator.energy().balance_error, 1e-13);
+  }
+}
+
+TEST(InitialDisplacement, IntoAnObstacleIsWarnedOf) {
+  json scene = shipped("held_rod");
+  scene["initial"] = {{{"displacement", {-0.25}}, {"gradient", {{0.25}}}}};
+  scene.erase("exact");
+  EXPECT_THAT(scene_of(scene).warnings,
+              ElementsAre("/interfaces/0: 1 node(s) start inside the obstacle, node 0 by 0.25"));
 }
 
 }  // namespace

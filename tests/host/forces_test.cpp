@@ -3,9 +3,6 @@
 
 #include "results/forces.hpp"
 
-#include <csignal>
-#include <thread>
-
 namespace ilaw::host::testing::forces {
 namespace {
 
@@ -83,25 +80,6 @@ TEST(Forces, SumToTheChangeOfMomentumWhateverTheRows) {
   }
 }
 
-// Masses at rest: the floor carries their weights, with the moment about a point that they have.
-TEST(Forces, CarryTheWeightAtRest) {
-  const json scene = json::parse(R"({
-    "model": {"type": "points", "dimension": 3, "points": [{"mass": 1, "position": [0, 0, 0]}, {"mass": 2, "position": [0.5, 0.1, 0]}]},
-    "time": {"dt": 0.0013, "end": 0.1},
-    "loads": [{"type": "gravity", "acceleration": [0, 0, -10]}],
-    "interfaces": [{"name": "floor", "law": "contact", "nodes": "all",
-      "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}],
-    "output": {"every": 9, "forces": [{"of": "floor", "about": [0.1, 0, 0]}]}})");
-  const Ran run = ran(scene);
-  const std::map<std::string, double> expected{{"floor.F0", 0.0},
-                                               {"floor.F1", 0.0},
-                                               {"floor.F2", 30.0},
-                                               {"floor.M0", 0.1 * 20},
-                                               {"floor.M1", 0.1 * 10 - 0.4 * 20},
-                                               {"floor.M2", 0.0}};
-  for (const auto& [column, value] : expected) EXPECT_NEAR(run.last(column), value, 1e-12) << column;
-}
-
 // A spring and a damper between two thrown masses, and one to a wall: what they do to their own
 // nodes is what changes their momentum, and turns them about the wall's end by nothing.
 TEST(Forces, OfSpringsAreTheChangeOfMomentumOfTheirNodes) {
@@ -156,75 +134,6 @@ TEST(Forces, BetweenRowsAreInTheSummary) {
   }
   EXPECT_NEAR(forces.summary()["weight"]["impulse"][0].get<double>(), 2 * (integrator.velocity()[0] - start),
               1e-14);
-}
-
-// Positions follow a path, though damping is listed after it.
-// At rest what presses on a body goes through both sides of its interface.
-TEST(Forces, OfBothSidesAreOneColumn) {
-  json source = shipped("patch_test");
-  source["output"]["forces"] = {"press", "both"};
-  const Ran run = ran(source);
-  EXPECT_NEAR(run.last("both.F2"), -run.last("press.F2"), 1e-3);
-  EXPECT_GT(run.last("both.F2"), 1000.0);
-}
-
-TEST(Forces, OfDampingDoNotReachAGrip) {
-  json scene = shaken_block();
-  scene["output"]["watch"] = {"b.z_max"};
-  EXPECT_NEAR(ran(scene).last("n26.u0"), 0.0, 1e-12);
-}
-
-// ---- events ---------------------------------------------------------------------------------------------
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t found = 0;
-  for (std::size_t k = text.find(part); k != std::string::npos; k = text.find(part, k + 1)) ++found;
-  return found;
-}
-
-// postit_test1 by hand (its `doc`): a pull breaks the bond four times, and each landing
-// heals it.
-TEST(Events, AreAllThereWhateverTheRows) {
-  json scene = shipped("postit_test1");
-  scene["output"]["events"] = true;
-  const std::string every_step = ran(scene).events;
-  scene["output"]["every"] = 97;
-  scene["output"].erase("watch");
-  const Ran run = ran(scene);
-  EXPECT_EQ(run.events, every_step);
-  EXPECT_EQ(count(run.events, ",rupture,"), 4U) << run.events;
-  EXPECT_EQ(count(run.events, ",rupture,"), run.summary["status_counts"]["broken"]);
-  EXPECT_EQ(count(run.events, ",healing,"), run.summary["status_counts"]["healed"]);
-}
-
-// The ball with e = 1 falls 1 in t1 = 0.447 and meets the floor at t1, 3 t1 and 5 t1 = 2.236, each time for
-// one step.
-TEST(Events, OfABallAreItsBounces) {
-  json scene = shipped("bouncing_ball");
-  scene["time"]["end"] = 3.0;
-  scene["output"] = {{"events", true}, {"every", 1000}};
-  const Ran run = ran(scene);
-  for (const char* event : {"contact", "release"})
-    EXPECT_EQ(count(run.events, std::string(",elastic,") + event + ","), 3U) << run.events;
-  scene["output"].erase("events");
-  EXPECT_EQ(ran(scene).events, "");
-}
-
-// Masses at rest on a floor that is taken away: it lets go of what it carried, and of nothing else.
-TEST(Events, OfAnInterfaceThatEndsAreItsReleases) {
-  const json scene = json::parse(R"({
-    "model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [0]}, {"mass": 2, "position": [5]},
-      {"mass": 3, "position": [0]}]},
-    "time": {"dt": 0.013, "end": 0.2}, "loads": [{"type": "gravity", "acceleration": [-10]}],
-    "interfaces": [{"name": "floor", "law": "contact", "nodes": "all", "death": 0.1,
-      "obstacle": {"type": "plane", "point": [0], "normal": [1]}}],
-    "output": {"events": true}})");
-  const Ran run = ran(scene);
-  EXPECT_EQ(count(run.events, "\n"), 5U) << run.events;
-  for (const char* node : {"0", "2"}) {
-    EXPECT_EQ(count(run.events, "," + std::string(node) + ",floor,contact,"), 1U) << run.events;
-    EXPECT_EQ(count(run.events, "," + std::string(node) + ",floor,release,0\n"), 1U) << run.events;
-  }
 }
 
 }  // namespace

@@ -34,19 +34,6 @@ void expect_steady(const Integrator& integrator, const Model& model, const Bar& 
   EXPECT_LT(integrator.temperatures()->report().balance_error, 1e-11);
 }
 
-TEST(JointHeat, JumpsAsTheFluxSays) {
-  const Bar below{.conductivity = 0.8, .elements = 4}, above{.conductivity = 1.3, .elements = 4};
-  for (const double conductance : {0.7, 30.0, 1e4})
-    for (const double fraction : step_fractions) {
-      SCOPED_TRACE(std::to_string(conductance) + ", step " + std::to_string(fraction));
-      json scene = two_columns(below, above, fraction * above.stable_step(), 40.0, joint(conductance));
-      scene["loads"].push_back(held("below.z_min", warm));
-      scene["loads"].push_back(held("above.z_max", cold));
-      auto [read, integrator] = run_to_end(scene);
-      expect_steady(integrator, *read.model, below, above, conductance);
-    }
-}
-
 // Two elements on three, both ways.
 TEST(JointHeat, PassesOverMeshesThatDoNotMatch) {
   const Bar below{.length = 0.7, .conductivity = 0.8, .elements = 2}, above{.length = 0.7, .elements = 3};
@@ -81,27 +68,6 @@ TEST(JointHeat, IsExactUnderAConstantHeating) {
         heating * area / capacity / rate * -std::expm1(-rate * thermal_time(integrator, dt));
     const Temperatures& at = *integrator.temperatures();
     EXPECT_NEAR(at.at(8) - at.at(4), expected, 1e-11) << dt;
-  }
-}
-
-// An obstacle is a reservoir: e^(-G t/C), and all heat of the body is in it.
-TEST(JointHeat, GivesAnObstacleItsHeat) {
-  for (const double dt : {0.13, 0.031, 0.0077}) {
-    json scene = {{"model", {{"type", "points"}, {"dimension", 1}}}, {"time", {{"dt", dt}, {"end", 2.0}}}};
-    scene["model"]["points"] = {
-        {{"mass", 2}, {"position", {0}}, {"thermal", {{"specific_heat", 3}, {"initial_temperature", 400}}}}};
-    scene["loads"] = {{{"type", "gravity"}, {"acceleration", {-10}}}};
-    scene["interfaces"] = {joint(1.5)};
-    scene["interfaces"][0]["nodes"] = {0};
-    scene["interfaces"][0]["obstacle"] = {
-        {"type", "plane"}, {"point", {0}}, {"normal", {1}}, {"temperature", 300}};
-    auto [read, integrator] = run_to_end(scene);
-    const double left = 100.0 * std::exp(-1.5 * thermal_time(integrator, dt) / 6.0);
-    EXPECT_NEAR(integrator.temperatures()->at(0), 300.0 + left, 1e-11);
-    const HeatReport heat = integrator.temperatures()->report();
-    EXPECT_NEAR(heat.obstacles, 6.0 * (100.0 - left), 1e-10);
-    EXPECT_NEAR(read.interfaces[0]->amounts()[0], -heat.obstacles, 1e-10);
-    EXPECT_LT(heat.balance_error, 1e-13);
   }
 }
 

@@ -126,37 +126,6 @@ TEST(MovingObstacle, IsTheOneAtRestDisplaced) {
 
 // ---- prescribed motion ----------------------------------------------------------------------------------
 
-// Positions follow a path at all steps, corners included, on the axes that are driven; the others are free.
-TEST(PrescribedMotion, IsFollowedToRounding) {
-  auto [scene, integrator] = simulation_of(R"({
-    "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [0, 0], "velocity": [0, 3]}]},
-    "time": {"dt": 1e-3, "end": 3}, "interfaces": [],
-    "loads": [{"type": "gravity", "acceleration": [5, -10]},
-      {"type": "motion", "nodes": [0], "axes": [0], "path": [[0, 0, 0], [1, 0.5, 0], [1.5, -1, 0], [2.5, -1, 0]]}]})");
-  const Table path({0.0, 1.0, 1.5, 2.5}, {Vector::Constant(1, 0.0), Vector::Constant(1, 0.5),
-                                          Vector::Constant(1, -1.0), Vector::Constant(1, -1.0)});
-  while (integrator.steps() < scene.steps) {
-    integrator.step();
-    const double t = integrator.time();
-    // 3000 sums of velocities h (up to 3 h), each rounded at a position of 1.
-    ASSERT_NEAR(integrator.displacement()[0], path.at(t)[0], 3000 * 2.2e-16) << t;
-    ASSERT_NEAR(integrator.displacement()[1], 3.0 * t - 5.0 * t * t, 1e-11) << t;
-  }
-  EXPECT_LE(integrator.energy().balance_error, 1e-12);
-}
-
-// A bar that is pulled at one end at a constant speed v and held at the other: after n passes of the wave the
-// energy given to it is what it holds. In the first, until L/c, the end feels the force Z v: work Z v^2 t.
-TEST(PrescribedMotion, DoesTheWorkOfItsForce) {
-  auto [scene, integrator] = run_to_end(R"({
-    "model": {"type": "bars", "bars": [{"name": "bar", "length": 1, "elements": 100, "young": 4, "density": 1}]},
-    "time": {"cfl": 1, "end": 0.45}, "interfaces": [],
-    "loads": [{"type": "motion", "nodes": "bar.right", "velocity": [0.3]}]})");
-  // The end moves at once: its first impulse is given to a half mass before the balance starts.
-  EXPECT_NEAR(integrator.energy().external_work, 2.0 * 0.3 * 0.3 * 0.45, 1e-12);
-  EXPECT_LE(integrator.energy().balance_error, 1e-14);
-}
-
 // ---- damping --------------------------------------------------------------------------------------------
 
 }  // namespace

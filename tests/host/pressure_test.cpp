@@ -1,4 +1,5 @@
-// Pressure on faces of blocks, against the volume that it works on and the stretch of rubber.
+// Pressure on faces of blocks, against the volume that it works on; tables in time, bulk viscosity of a body
+// that turns, and half a driven block.
 #include "host_runner.hpp"
 
 #include <Eigen/Geometry>
@@ -94,32 +95,6 @@ TEST(Pressure, PushesOnTheFaceItIsGivenFor) {
   EXPECT_NEAR(sum.head<2>().norm(), 0.0, 1e-15);
 }
 
-// Rubber under pressure from all sides has the stretch s with
-//   (mu (s^2 - 1) + 3 lambda ln s)/s^3 = -p,
-// the Cauchy stress of the material in docs/scenes.md; a force that kept its size and direction would
-// leave out s^2.
-TEST(Pressure, CompressesRubberToTheStretchOfItsLaw) {
-  constexpr double p = 0.4, mu = 1.0 / 2.6, lambda = 0.3 / (1.3 * 0.4);
-  const auto excess = [](double s) {
-    return (mu * (s * s - 1.0) + 3.0 * lambda * std::log(s)) / (s * s * s) + p;
-  };
-  double low = 0.5, high = 1.0;
-  for (int k = 0; k < 60; ++k) (excess(0.5 * (low + high)) < 0.0 ? low : high) = 0.5 * (low + high);
-  json source = rubber_block("neo_hookean");
-  press_everywhere(source, p);
-  source["loads"].push_back({{"type", "damping"}, {"rate", 3.0}});
-  source["time"]["end"] = 20;
-  for (const double cfl : {0.5, 0.41, 0.37}) {
-    source["time"]["cfl"] = cfl;
-    auto [scene, integrator] = run_to_end(source);
-    const Dofs x = scene.model->position() + integrator.displacement();
-    const Eigen::Vector3d diagonal = x.tail<3>() - x.head<3>();
-    EXPECT_NEAR(diagonal[0], low * 1.0, 1e-9) << cfl;
-    EXPECT_NEAR(diagonal[1], low * 1.2, 1e-9) << cfl;
-    EXPECT_NEAR(diagonal[2], low * 0.9, 1e-9) << cfl;
-  }
-}
-
 // The work of a constant pressure is what it takes from the volume, but for the step's second order.
 TEST(Pressure, WorksOnTheVolume) {
   constexpr double p = 0.2;
@@ -141,6 +116,87 @@ TEST(Pressure, WorksOnTheVolume) {
     EXPECT_LT(integrator.energy().balance_error, 1e-12) << "h " << h;
   }
   EXPECT_GT(order(steps, errors), 1.8);
+}
+
+TEST(Table, IsSmoothBetweenItsRowsOrASine) {
+  const Table smooth({1.0, 3.0}, {Vector::Constant(1, 2.0), Vector::Constant(1, 6.0)}, true);
+  EXPECT_EQ(smooth.at(0.0)[0], 2.0);
+  EXPECT_EQ(smooth.at(2.0)[0], 4.0);
+  EXPECT_EQ(smooth.at(5.0)[0], 6.0);
+  for (const double at : {1.0, 3.0}) EXPECT_NEAR(smooth.at(at + 1e-4)[0], smooth.at(at - 1e-4)[0], 1e-11);
+  const Table sine(Sine{Vector::Constant(1, 1.0), Vector::Constant(1, 3.0), 0.5, 0.1});
+  EXPECT_NEAR(sine.at(0.3)[0], 1.0 + 3.0 * std::sin(0.3 * M_PI + 0.1), 1e-15);
+}
+
+// A body that has turned, and turns, keeps its volume.
+TEST(BulkViscosity, LetsABodyTurn) {
+  json source = until_at_cfl(
+      1.0, 0.5,
+      scene_of_blocks({block("b", {0, 0, 0}, {1, 1, 1}, {2, 1, 1},
+                             {{"type", "neo_hookean"}, {"young", 1}, {"poisson", 0.3}, {"density", 1}})},
+                      "[]"));
+  source["loads"] = {{{"type", "bulk_viscosity"}}};
+  const Scene scene = scene_of(source);
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  const Eigen::Vector3d spin(0.3, -2, 0.7);
+  const Dofs& x = scene.model->position();
+  Dofs u(x.size()), v(x.size()), impulse = Dofs::Zero(x.size());
+  for (Eigen::Index k = 0; k < x.size(); k += 3) {
+    u.segment<3>(k) = turn * x.segment<3>(k) - x.segment<3>(k);
+    v.segment<3>(k) = spin.cross(turn * x.segment<3>(k));
+  }
+  Dofs after = v;
+  scene.loads[0]->correct({0.0, 1.0}, {u, v}, after, impulse);
+  EXPECT_LT(impulse.cwiseAbs().maxCoeff(), 1e-14);
+}
+
+// Half a block, its plane of symmetry driven along x alone, against the whole one: the same motion and
+// energies.
+TEST(Driven, HalfABlockMovesAsTheWholeOne) {
+  json whole = scene_of_blocks(
+      {block("b", {-1, 0, 0}, {2, 0.5, 0.5}, {4, 1, 2}, elastic(1e7, 0.3, 1000))},
+      R"([{"name": "floor", "nodes": "b.z_min", "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}])");
+  whole["model"]["blocks"][0]["velocity"] = {0, 0, -1};
+  whole["loads"] =
+      json::parse(R"([{"type": "gravity", "acceleration": [0, 0, -10]}, {"type": "damping", "rate": 40}])");
+  for (const auto& [law, parameters] : std::map<const char*, const char*>{
+           {"contact", "{}"},
+           {"coulomb", R"({"friction": 0.3})"},
+           {"postit", R"({"friction": 0.2})"},
+           {"tie", "{}"},
+           {"cohesive", R"({"strength": 3e4, "toughness": 20, "friction": 0.2})"}})
+    for (const double cfl : {0.9, 0.999, 0.53}) {
+      GIVEN(law, cfl);
+      whole["interfaces"][0]["law"] = law;
+      whole["interfaces"][0]["parameters"] = json::parse(parameters);
+      whole["time"] = {{"cfl", cfl}, {"end", 0.05}};
+      json half = whole;
+      half["model"]["blocks"][0].update(
+          {{"corner", {0, 0, 0}}, {"size", {1, 0.5, 0.5}}, {"elements", {2, 1, 2}}});
+      half["loads"].push_back({{"type", "motion"}, {"nodes", "b.x_min"}, {"axes", {0}}});
+      Scene all = scene_of(whole), part = scene_of(half);
+      host::Integrator one(*all.model, all.loads, all.interfaces, all.dt),
+          other(*part.model, part.loads, part.interfaces, all.dt);
+      for (std::int64_t k = 0; k < all.steps; ++k) {
+        one.step();
+        other.step();
+      }
+      double largest = 0.0, difference = 0.0;
+      for (Eigen::Index i = 0; i < part.model->position().size(); i += 3)
+        for (Eigen::Index j = 0; j < all.model->position().size(); j += 3) {
+          const Eigen::Vector3d u = one.displacement().segment<3>(j);
+          if ((part.model->position().segment<3>(i) - all.model->position().segment<3>(j)).norm() > 1e-9)
+            continue;
+          difference = std::max(difference, (other.displacement().segment<3>(i) - u).norm());
+          largest = std::max(largest, u.norm());
+        }
+      EXPECT_LT(difference, 1e-10 * largest);
+      const EnergyReport a = one.energy(), b = other.energy();
+      EXPECT_NEAR(2.0 * b.interface_work, a.interface_work, 1e-10 * a.scale);
+      EXPECT_NEAR(2.0 * b.by_law[ILAW_ENERGY_FRICTION], a.by_law[ILAW_ENERGY_FRICTION], 1e-10 * a.scale);
+      EXPECT_LT(b.balance_error, 1e-12);
+    }
 }
 
 }  // namespace

@@ -63,44 +63,6 @@ TEST(Scene, WhoseLibraryIsNoLibraryIsRefusedThere) {
   EXPECT_THAT(refusal_of(scene), StartsWith("/interfaces/0/library: " + (folder / "law.so").string()));
 }
 
-// ---- steps and warnings ---------------------------------------------------------------------------------
-
-std::vector<std::string> warnings_of(const char* pointer, const char* value) {
-  json scene = good_scene();
-  scene[json::json_pointer(pointer)] = json::parse(value);
-  return scene_of(scene).warnings;
-}
-
-// A scene that can run, but can hardly be meant, runs with a warning.
-TEST(Warnings, TellWhatCanHardlyBeMeant) {
-  using Warnings = std::vector<std::string>;
-  EXPECT_EQ(warnings_of("/title", "\"as it is\""), Warnings{});
-  EXPECT_EQ(warnings_of("/loads/0", R"({"type": "shock", "nodes": [0], "time": 0.2, "impulse": [0, 1]})"),
-            Warnings{"/loads/0/time: found 0.2, after the end of the run, 0.1"});
-  EXPECT_EQ(warnings_of("/interfaces/0/birth", "0.11"),
-            Warnings{"/interfaces/0/birth: found 0.11, after the end of the run, 0.1"});
-  EXPECT_EQ(warnings_of("/time/dt", "0.5"),
-            Warnings{"/time/end: found 0.1, less than one step, 0.5, which is taken all the same"});
-  EXPECT_EQ(warnings_of("/output/every", "101"),
-            Warnings{"/output/every: found 101: the history has the last of 100 steps alone"});
-  EXPECT_EQ(
-      warnings_of("/interfaces/0/obstacle", R"({"type": "sphere", "center": [0.5, 1], "radius": 0.75})"),
-      Warnings{"/interfaces/0: 2 node(s) start inside the obstacle, node 0 by 0.25"});
-  const Warnings deep = warnings_of("/interfaces/0/obstacle",
-                                    R"({"type": "plane", "point": [0, 1.00000001], "normal": [0, 1]})");
-  ASSERT_EQ(deep.size(), 1U) << "beyond rounding, though small beside the bodies";
-  EXPECT_EQ(deep[0].find("/interfaces/0: 2 node(s) start inside the obstacle"), 0U) << deep[0];
-}
-
-// For blocks the critical step is a bound from below.
-TEST(Warnings, TellOfAStepThatMayBeUnstable) {
-  json scene = json_of(scene_files::named("block_impact.json"));
-  scene["time"] = {{"dt", 1e-3}, {"end", 0.01}};
-  const std::vector<std::string> warnings = scene_of(scene).warnings;
-  ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_THAT(warnings[0], StartsWith("/time/dt: found 0.001, which may be unstable"));
-}
-
 // 36 nodes of the upper block 1 cm inside the lower one.
 TEST(Warnings, TellOfAnOverlapWithASurface) {
   json scene = json_of(scene_files::named("two_blocks.json"));

@@ -1,6 +1,8 @@
 // Nodes by name, by place and by box: what a scene may say of nodes, wherever it names some.
 #include "host_runner.hpp"
 
+#include "results/history.hpp"
+
 namespace ilaw::host::testing::scene_sets {
 namespace {
 
@@ -85,6 +87,50 @@ TEST(ScenesPage, BeginsWithASceneThatDoesWhatItSays) {
   EXPECT_NEAR(integrator.time(), 1.333, 5e-3);
   EXPECT_NEAR(integrator.displacement()[0], 2.80, 5e-3);
   EXPECT_LT(integrator.time(), 1.5);
+}
+
+// The nodes of a face are in an order that depends on its axis and side.
+TEST(Partners, OfTwoFacesFaceEachOther) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool swapped : {false, true}) {
+      json scene = json::parse(R"({"model": {"type": "blocks", "blocks": [
+          {"name": "low", "size": [1, 2, 3], "elements": [2, 3, 4], "material": {"type": "linear", "young": 1, "poisson": 0, "density": 1}},
+          {"name": "up", "size": [1, 2, 3], "elements": [2, 3, 4], "material": {"type": "linear", "young": 1, "poisson": 0, "density": 1}}]},
+          "time": {"cfl": 0.5, "end": 1}, "interfaces": [{"law": "contact"}]})");
+      std::array<double, 3> corner{}, normal{};
+      corner[axis] = axis + 1.0;
+      normal[axis] = swapped ? -1.0 : 1.0;
+      scene["model"]["blocks"][1]["corner"] = corner;
+      std::array<std::string, 2> faces{std::string("up.") + "xyz"[axis] + "_min",
+                                       std::string("low.") + "xyz"[axis] + "_max"};
+      scene["interfaces"][0]["nodes"] = faces[swapped];
+      scene["interfaces"][0]["against"] = {{"nodes", faces[!swapped]}, {"normal", normal}};
+      const Scene read = scene_of(scene.dump());
+      const Interface& interface = *read.interfaces[0];
+      const std::vector<int>& partners = interface.setup().counterpart->partners();
+      ASSERT_EQ(partners.size(), interface.nodes().size());
+      for (std::size_t k = 0; k < partners.size(); ++k)
+        EXPECT_LT((read.model->position(interface.nodes()[k]) - read.model->position(partners[k])).norm(),
+                  1e-12)
+            << faces[swapped] << " node " << k;
+      EXPECT_EQ(read.warnings.size(), 0U);
+    }
+}
+
+// Watching makes no contact: contacts have the order of their nodes, of which steps make use.
+TEST(Watched, NodesAreContactsInTheirOrder) {
+  auto [run, integrator] = simulation_of(R"({"model": {"type": "points", "dimension": 1,
+      "points": [{"mass": 2, "position": [0]}, {"mass": 2, "position": [0]}, {"mass": 2, "position": [0]}]},
+    "time": {"dt": 0.001, "end": 0.2}, "interfaces": [{"law": "tie", "nodes": "all",
+      "obstacle": {"type": "plane", "point": [0], "normal": [1]}}], "output": {"watch": [2, 1]}})");
+  const auto folder = fresh_folder();
+  History history(run, integrator);
+  history.open(folder);
+  history.add_row(integrator);
+  EXPECT_EQ(run.interfaces[0]->contact_count(), 0U);
+  integrator.step();
+  history.add_row(integrator);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(run.interfaces[0]->contact_at(k), k);
 }
 
 }  // namespace

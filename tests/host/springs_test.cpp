@@ -7,82 +7,6 @@
 namespace ilaw::host::testing::springs {
 namespace {
 
-json two_masses(double stiffness, double damping) {
-  json scene = json::parse(R"({"model": {"type": "points", "dimension": 1, "points": [
-      {"mass": 1, "position": [0], "velocity": [0.3]}, {"mass": 3, "position": [2], "velocity": [-0.1]}]},
-    "time": {"end": 4}, "springs": [{"nodes": [0], "to": [1], "length": 1.5}], "interfaces": []})");
-  scene["springs"][0]["stiffness"] = stiffness;
-  scene["springs"][0]["damping"] = damping;
-  return scene;
-}
-
-constexpr double reduced_mass = 0.75;
-
-// About its rest length the distance is a cos(W n h) + b sin(W n h), sin(W h/2) = w h/2; the centre of
-// mass is at rest, for the momentum is 0.
-TEST(Spring, SwingsAboutItsRestLength) {
-  constexpr double k = 3.0, stretch = 0.5, speed = -0.4;
-  for (const double h : {0.07, 0.11, 0.13}) {
-    json source = two_masses(k, 0.0);
-    source["time"]["dt"] = h;
-    auto [scene, integrator] = simulation_of(source);
-    const double W = 2.0 * std::asin(0.5 * h * std::sqrt(k / reduced_mass));
-    const double b = h * speed / std::sin(W);
-    EXPECT_NEAR(integrator.energy().potential, 0.5 * k * stretch * stretch, 1e-15) << "h " << h;
-    while (integrator.steps() < scene.steps) {
-      integrator.step();
-      const double phase = W * static_cast<double>(integrator.steps());
-      const Dofs& u = integrator.displacement();
-      ASSERT_NEAR(2.0 + u[1] - u[0], 1.5 + stretch * std::cos(phase) + b * std::sin(phase), 1e-13) << h;
-      ASSERT_NEAR(u[0] + 3.0 * u[1], 0.0, 1e-14) << h;
-    }
-    EXPECT_LT(integrator.energy().balance_error, 1e-13) << "h " << h;
-  }
-}
-
-// Each step takes h c/m of the speed before it, and the half step to the first velocity half of that.
-TEST(Damper, StartsWithHalfAStep) {
-  constexpr double c = 0.5;
-  for (const double h : {0.07, 0.11, 0.13}) {
-    json source = two_masses(0.0, c);
-    source["time"]["dt"] = h;
-    auto [scene, integrator] = simulation_of(source);
-    const double part = h * c / reduced_mass;
-    double rate = -0.4 * (1.0 - 0.5 * part);
-    for (;; rate *= 1.0 - part) {
-      ASSERT_NEAR(integrator.velocity()[1] - integrator.velocity()[0], rate, 1e-15)
-          << "step " << integrator.steps() << " of " << h;
-      if (integrator.steps() == scene.steps) break;
-      integrator.step();
-    }
-  }
-}
-
-// One end drives, the other is dragged along: the reaction of what drives is what the damper gives to
-// the mass, whatever else damps.
-TEST(Damper, DragsFromAnEndThatIsDriven) {
-  json source = two_masses(0.0, 0.5);
-  source["loads"] =
-      json::parse(R"([{"type": "damping", "rate": 0}, {"type": "motion", "nodes": [0], "velocity": [0.2]}])");
-  for (const double h : {0.04, 0.03, 0.007}) {
-    source["time"] = {{"dt", h}, {"end", 40}};
-    auto [scene, integrator] = simulation_of(source);
-    integrator.keep_load_impulse(1);
-    double before = integrator.velocity()[1];
-    // The node has the velocity of its motion before the start, too.
-    EXPECT_NEAR(before, -0.1 + 0.5 * h * 0.5 / 3.0 * (0.2 + 0.1), 1e-15) << "h " << h;
-    while (integrator.steps() < scene.steps) {
-      integrator.step();
-      Dofs reaction = Dofs::Zero(2);
-      integrator.add_load_impulse(1, reaction);
-      ASSERT_NEAR(reaction[0], 3.0 * (integrator.velocity()[1] - before), 1e-15) << integrator.steps();
-      before = integrator.velocity()[1];
-    }
-    EXPECT_NEAR(integrator.velocity()[1], 0.2, 1e-2 * 0.3) << "h " << h;
-    EXPECT_LT(integrator.energy().balance_error, 1e-12) << "h " << h;
-  }
-}
-
 // In the plane a spring is a pendulum: the force is central, so that the angular momentum stays to rounding,
 // and the energy that it stores is what it works.
 TEST(Spring, TurnsWithItsEnds) {
@@ -145,35 +69,6 @@ TEST(Spring, WarnsWhenSetsDoNotFaceEachOther) {
 
 // ---- the critical step ----------------------------------------------------------------------------------
 
-double growth_at(json source, double h) {
-  source["time"] = {{"dt", h}, {"end", 400.0 * h}};
-  auto [scene, integrator] = simulation_of(source);
-  try {
-    while (integrator.steps() < scene.steps) integrator.step();
-  } catch (const Diverged&) {
-    return INFINITY;
-  }
-  const Dofs& u = integrator.displacement();
-  return std::abs(u[1] - u[0]);
-}
-
-// One spring and damper: 2 (sqrt(1 + z^2) - z)/w, and it is the limit.
-TEST(SpringsCriticalStep, IsTheLimitOfOneSpring) {
-  for (const double z : {0.0, 0.2, 1.0, 3.0}) {
-    const double k = 3.0, w = std::sqrt(k / reduced_mass), c = 2.0 * z * w * reduced_mass;
-    json source = two_masses(k, c);
-    source["springs"][0]["length"] = 0.0;  // linear, also where the ends pass each other
-    source["time"] = {{"cfl", 1.0}, {"end", 1.0}};
-    const double critical = scene_of(source).dt;
-    EXPECT_NEAR(critical, 2.0 * (std::sqrt(1.0 + z * z) - z) / w, 1e-14) << z;
-    EXPECT_LT(growth_at(source, 0.999 * critical), 100.0) << z;
-    EXPECT_GT(growth_at(source, 1.05 * critical), 1e10) << z;
-  }
-  json source = two_masses(0.0, 2.0);
-  source["time"] = {{"cfl", 1.0}, {"end", 1.0}};
-  EXPECT_NEAR(scene_of(source).dt, 2.0 / (2.0 / reduced_mass), 1e-14);
-}
-
 // A chain of equal masses: hardly anything is given away; networks at random: no step is too large.
 TEST(SpringsCriticalStep, IsABoundFromBelow) {
   Random random(14);
@@ -205,22 +100,6 @@ TEST(SpringsCriticalStep, IsABoundFromBelow) {
     ASSERT_LE(found, limit * (1.0 + 1e-12)) << "round " << round;
     ASSERT_GE(found, (is_chain ? 0.98 : 0.6) * limit) << "round " << round;
   }
-}
-
-// Beside a body's own stiffness: a bar whose end is held by a spring.
-TEST(SpringsCriticalStep, CountsTheBody) {
-  json source = json::parse(R"({"model": {"type": "bars", "bars": [{"length": 1, "elements": 10, "young": 1,
-      "density": 1}]}, "time": {"cfl": 1, "end": 5}, "interfaces": [],
-    "springs": [{"nodes": "bar0.right", "anchor": [1.5], "stiffness": 30, "damping": 0.2}],
-    "initial": [{"gradient": [[0.1]]}]})");
-  Scene scene = scene_of(source);
-  EXPECT_NEAR(scene.dt, 4.0 / (4.0 + std::sqrt(16.0 + 4.0 * (400.0 + 600.0))), 1e-15);
-  Integrator integrator = integrator_of(scene);
-  const double start = integrator.energy().scale;
-  while (integrator.steps() < scene.steps) integrator.step();
-  EXPECT_LT(integrator.energy().balance_error, 1e-12);
-  EXPECT_LT(integrator.energy().damping_work, 0.0);
-  EXPECT_LE(integrator.energy().scale, start * (1.0 + 1e-12));
 }
 
 }  // namespace

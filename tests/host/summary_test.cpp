@@ -16,16 +16,6 @@ json sliding_mass(const char* law, const json& parameters) {
   return scene;
 }
 
-// mean_opening and what is named history stay in the state and out of the table.
-TEST(Program, HistoryLeavesOutTheLawsBookkeeping) {
-  const auto folder = fresh_folder();
-  ASSERT_EQ(run_scene(sliding_mass("cohesive", {{"strength", 1}, {"toughness", 1}}), folder).code, 0);
-  const std::string history = text_of(folder / "history.csv");
-  EXPECT_EQ(
-      history.substr(0, history.find('\n')),
-      "time,n0.u0,n0.u1,n0.u2,n0.v0,n0.v1,n0.v2,n0.r0,n0.r1,n0.r2,n0.gap,n0.status,n0.damage,n0.opening");
-}
-
 json summary_of(const json& scene) { return ran(scene).summary; }
 
 // Every contact of every step is active or skipped, and has a status.
@@ -78,20 +68,6 @@ json mass_on_spring(const char* integration, double dt) {
   return scene;
 }
 
-TEST(Summary, WarnsOfAnExplicitSpringThatIsTooStiff) {
-  for (const double dt : {0.013, 0.019, 0.021, 0.037}) {
-    const json summary = summary_of(mass_on_spring("explicit", dt));
-    EXPECT_NEAR(summary["stable_step"].get<double>(), 0.02, 1e-15) << dt;
-    int told = 0;
-    for (const std::string warning : summary["warnings"])
-      told += warning.find("where a law is stable up to 0.02 at its nodes") != std::string::npos;
-    EXPECT_EQ(told, dt > 0.02 ? 1 : 0) << dt << ": " << summary["warnings"];
-    const json implicit = summary_of(mass_on_spring("implicit", dt));
-    EXPECT_EQ(implicit["stable_step"], "inf") << "dt " << dt;
-    EXPECT_TRUE(implicit["warnings"].empty()) << dt << ": " << implicit["warnings"];
-  }
-}
-
 // In scenes of few nodes one step in 16 is timed for all: of what the steps take, the better part is told.
 // The first steps, which load libraries and memory, are timed one by one and left out.
 TEST(Clock, StepsThatAreTimedStandForThoseThatAreNot) {
@@ -139,19 +115,6 @@ TEST(Clock, AnInterruptionStandsForItself) {
   seconds = 0.0;
   untimed.add_to(seconds);
   EXPECT_EQ(seconds, 0.0);
-}
-
-// Contacts that share nodes: how many sweeps, and what the last one still changed.
-TEST(Summary, TellsHowCoupledContactsConverged) {
-  const json coupled = summary_of(shipped("two_blocks"))["coupling"];
-  EXPECT_GT(coupled["sweeps_max"], 1);
-  EXPECT_GE(coupled["sweeps"], coupled["sweeps_max"]);
-  EXPECT_LE(coupled["residual_max"], coupled["tolerance"]);
-  EXPECT_EQ(coupled["tolerance"], 1e-10);
-  EXPECT_EQ(coupled["steps_unconverged"], 0);
-  const json single = summary_of(shipped("two_bars"))["coupling"];
-  EXPECT_EQ(single["sweeps"], 0);
-  EXPECT_EQ(single["residual_max"], 0.0);
 }
 
 }  // namespace

@@ -15,48 +15,6 @@ namespace {
 
 // ---- conduction -----------------------------------------------------------------------------------------
 
-TEST(Thermal, ConductsALinearProfile) {
-  const Bar bar{.conductivity = 0.3};
-  for (const double fraction : step_fractions) {
-    json scene = scene_with({column(bar, "bar", 0)}, fraction * bar.stable_step(), 40.0 / bar.conductivity);
-    scene["loads"] = {held("bar.z_min", 400), held("bar.z_max", 280)};
-    auto [read, integrator] = run_to_end(scene);
-    for (int node = 0; node < read.model->node_count(); ++node)
-      EXPECT_NEAR(integrator.temperatures()->at(node), 400 - 120 * read.model->position()[3 * node + 2],
-                  1e-10);
-    EXPECT_LT(integrator.temperatures()->report().balance_error, 1e-12);
-  }
-}
-
-// Nodes follow a table at the times of their temperatures.
-TEST(Thermal, HoldsNodesAtATableOverTime) {
-  const Bar bar{.conductivity = 0.3, .elements = 3};
-  for (const double fraction : step_fractions) {
-    const double dt = fraction * bar.stable_step();
-    json scene = scene_with({column(bar, "bar", 0)}, dt, 1.0);
-    scene["loads"] = {held("bar.z_min", 300)};
-    scene["loads"][0]["history"] = {{0, 300}, {4, 380}};
-    auto [read, integrator] = run_to_end(scene);
-    EXPECT_NEAR(integrator.temperatures()->at(0), 300 + 20 * thermal_time(integrator, dt), 1e-10);
-    EXPECT_LT(integrator.temperatures()->report().balance_error, 1e-12);
-  }
-}
-
-// A side with a flux of 6 and a conductivity of 0.3 has the slope 20.
-TEST(Thermal, ConductsAFluxThroughABar) {
-  const Bar bar{.conductivity = 0.3};
-  for (const double fraction : step_fractions) {
-    const double dt = fraction * bar.stable_step();
-    json scene = scene_with({column(bar, "bar", 0)}, dt, 200.0 / bar.conductivity);
-    scene["loads"] = {held("bar.z_min", 290),
-                      {{"type", "heat_flux"}, {"nodes", "bar.z_max"}, {"history", {{0, 6}}}}};
-    auto [read, integrator] = run_to_end(scene);
-    for (int node = 0; node < read.model->node_count(); ++node)
-      EXPECT_NEAR(integrator.temperatures()->at(node), 290 + 20 * read.model->position()[3 * node + 2], 1e-9);
-    EXPECT_LT(integrator.temperatures()->report().balance_error, 1e-11);
-  }
-}
-
 // Carslaw, Jaeger 1959, section 2.9: the surface of a half space under a constant flux is at 2 q sqrt(t/(pi k
 // rho c)).
 TEST(Thermal, HeatsAHalfSpaceBySecondOrder) {
@@ -109,33 +67,6 @@ TEST(Thermal, ConductsALinearProfileThroughAMesh) {
 }
 
 // ---- contact that conducts ------------------------------------------------------------------------------
-
-// Two masses that are pressed together: their difference decays as exp(-G t (1/C + 1/C_c)), at any step.
-TEST(Thermal, BringsTwoPointsToTheirEquilibrium) {
-  const auto point = [](double mass, double specific_heat, double temperature) {
-    return json{{"mass", mass},
-                {"position", {0}},
-                {"thermal", {{"specific_heat", specific_heat}, {"initial_temperature", temperature}}}};
-  };
-  for (const double dt : {0.13, 0.031, 0.0077}) {
-    json scene = {{"model", {{"type", "points"}, {"dimension", 1}}}, {"time", {{"dt", dt}, {"end", 2.0}}}};
-    scene["model"]["points"] = {point(2, 3, 350), point(5, 0.4, 280)};
-    scene["loads"] = {{{"type", "force"}, {"nodes", {0}}, {"direction", {-1}}, {"history", {{0, 7}}}},
-                      {{"type", "force"}, {"nodes", {1}}, {"direction", {1}}, {"history", {{0, 7}}}}};
-    scene["interfaces"] = {{{"law", "conductance"},
-                            {"parameters", {{"conductance", 0.5}, {"conductance_per_pressure", 0.1}}},
-                            {"nodes", {0}},
-                            {"against", {{"nodes", {1}}, {"normal", {1}}}}}};
-    auto [read, integrator] = run_to_end(scene);
-    const double decay = std::exp(-(0.5 + 0.1 * 7) * thermal_time(integrator, dt) * (1.0 / 6 + 1.0 / 2));
-    const double mean = (6 * 350.0 + 2 * 280.0) / 8;
-    EXPECT_NEAR(integrator.temperatures()->at(0), mean + 2.0 / 8 * 70 * decay, 1e-11);
-    EXPECT_NEAR(integrator.temperatures()->at(1), mean - 6.0 / 8 * 70 * decay, 1e-11);
-    const HeatReport heat = integrator.temperatures()->report();
-    EXPECT_NEAR(heat.stored, 0.0, 1e-11);
-    EXPECT_EQ(heat.friction, 0.0);
-  }
-}
 
 // Carslaw, Jaeger 1959, section 2.14: the surfaces of two half spaces that touch are at the mean of their
 // temperatures, weighed by their effusivities. On meshes of size d the error falls as exp(-4 a t/d^2): a
@@ -245,21 +176,6 @@ json sliding_point(double dt, double partition) {
   return scene;
 }
 
-// All of the kinetic energy, 16, becomes heat: a part of it in the block of capacity 10.
-TEST(Thermal, StopsABlockByItsHeat) {
-  for (const double dt : {0.013, 0.0031, 0.00071})
-    for (const double partition : {0.0, 0.25, 1.0}) {
-      auto [read, integrator] = run_to_end(sliding_point(dt, partition));
-      EXPECT_NEAR(integrator.temperatures()->at(0), 290 + partition * 1.6, 1e-12);
-      const HeatReport heat = integrator.temperatures()->report();
-      EXPECT_NEAR(heat.stored, partition * 16, 1e-12);
-      EXPECT_NEAR(heat.obstacles, (1 - partition) * 16, 1e-12);
-      EXPECT_NEAR(heat.friction, integrator.energy().by_law[ILAW_ENERGY_FRICTION], 1e-12);
-      EXPECT_LT(heat.balance_error, 1e-13);
-      EXPECT_LT(integrator.energy().balance_error, 1e-13);
-    }
-}
-
 // A block in 3D that slides over another: the law's shares reach both, and conduction spreads them.
 TEST(Thermal, SharesFrictionBetweenTwoBlocks) {
   const Bar below{.conductivity = 0.4, .temperature = 0.0, .elements = 2},
@@ -309,17 +225,6 @@ TEST(Thermal, TakesBackAStepThatOverflows) {
   EXPECT_EQ(after.highest, before.highest);
 }
 
-TEST(Thermal, WritesTemperaturesAndHeat) {
-  json scene = sliding_point(0.01, 0.25);
-  scene["output"] = {{"watch", {0}}, {"balance", true}};
-  const Ran result = ran(scene);
-  EXPECT_NEAR(result.last("n0.T"), 290.4, 1e-12);
-  EXPECT_NEAR(result.last("heat.stored"), 4.0, 1e-12);
-  EXPECT_NEAR(result.last("heat.obstacles"), 12.0, 1e-12);
-  EXPECT_NEAR(result.summary["heat"]["friction"].get<double>(), 16.0, 1e-12);
-  EXPECT_NEAR(result.summary["heat"]["highest_temperature"].get<double>(), 290.4, 1e-12);
-}
-
 TEST(Thermal, WritesTemperaturesToFields) {
   const auto folder = fresh_folder();
   json scene = sliding_point(0.01, 0.25);
@@ -330,77 +235,6 @@ TEST(Thermal, WritesTemperaturesToFields) {
   EXPECT_EQ(outcome.code, 0) << outcome.output;
   EXPECT_NE(text_of(folder / "fields_000001.vtu").find("Name=\"temperature\""), std::string::npos);
   std::filesystem::remove_all(folder);
-}
-
-TEST(Thermal, WritesNothingWithoutTemperatures) {
-  json scene = sliding_point(0.01, 0.25);
-  scene["model"]["points"][0].erase("thermal");
-  scene["output"] = {{"watch", {0}}, {"balance", true}};
-  const Ran result = ran(scene);
-  EXPECT_FALSE(result.history.contains("n0.T"));
-  EXPECT_FALSE(result.history.contains("heat.stored"));
-  EXPECT_FALSE(result.summary.contains("heat"));
-}
-
-TEST(Thermal, RefusesAStepAboveThatOfConduction) {
-  const Bar bar{.elements = 5};
-  const double stable = bar.stable_step();
-  EXPECT_NO_THROW(scene_of(scene_with({column(bar, "tread", 0)}, stable, 1.0).dump()));
-  const std::string said = refusal_of(scene_with({column(bar, "tread", 0)}, 1.001 * stable, 1.0));
-  EXPECT_NE(said.find("the stable step of conduction in 'tread'"), std::string::npos) << said;
-  json scene = scene_with({column(bar, "tread", 0)}, 1.001 * stable, 1.0);
-  scene["model"]["blocks"][0].erase("name");
-  EXPECT_NE(refusal_of(scene).find("conduction in 'block0'"), std::string::npos);
-  scene["time"] = {{"cfl", 0.5}, {"end", 1.0}};
-  EXPECT_NEAR(scene_of(scene.dump()).dt, 0.5 * stable, 1e-15);
-}
-
-TEST(Thermal, RefusesTwoTemperaturesOfANode) {
-  json scene = sliding_point(0.01, 0.5);
-  scene["interfaces"][0]["law"] = "conductance";
-  scene["interfaces"][0]["parameters"] = {{"conductance", 1}};
-  EXPECT_NE(refusal_of(scene).find("/interfaces/0/obstacle: key 'temperature' is missing"),
-            std::string::npos);
-  scene["interfaces"][0]["obstacle"]["temperature"] = {{0, 300}, {1, 320}};
-  EXPECT_EQ(refusal_of(scene), "not refused");
-  scene["fields"] = {{"temperature", 300}};
-  EXPECT_NE(refusal_of(scene).find("/fields/temperature: found a value, expected none"), std::string::npos);
-  scene.erase("fields");
-  scene["interfaces"][0]["parameters"]["temperature"] = 300;
-  EXPECT_NE(refusal_of(scene).find("/interfaces/0/parameters/temperature: found a value"), std::string::npos);
-}
-
-// A field is for interfaces whose bodies have no temperature.
-TEST(Thermal, TakesFieldsInterfaceByInterface) {
-  json scene = sliding_point(0.01, 0.5);
-  scene["model"]["points"].push_back({{"mass", 2}, {"position", {1, 0}}});
-  scene["interfaces"][0]["nodes"] = {0};
-  scene["interfaces"].push_back({{"law", "conductance"},
-                                 {"nodes", {1}},
-                                 {"parameters", {{"conductance", 1}}},
-                                 {"obstacle", scene["interfaces"][0]["obstacle"]}});
-  scene["fields"] = {{"temperature", 300}, {"counterpart_temperature", 310}};
-  EXPECT_EQ(refusal_of(scene), "not refused");
-  scene["model"]["points"][1]["thermal"] = scene["model"]["points"][0]["thermal"];
-  scene["interfaces"][1]["obstacle"]["temperature"] = 310;
-  EXPECT_NE(refusal_of(scene).find("/fields/temperature: found a value, expected none: the nodes of "
-                                   "'interface1' have temperatures of their own, which its law reads"),
-            std::string::npos)
-      << refusal_of(scene);
-}
-
-TEST(Thermal, WarnsOfATemperatureThatNoLawReads) {
-  json scene = sliding_point(0.01, 0.5);
-  EXPECT_TRUE(scene_of(scene).warnings.empty());
-  scene["interfaces"][0]["obstacle"]["temperature"] = 310;
-  const std::vector<std::string> warnings = scene_of(scene).warnings;
-  ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_EQ(warnings[0],
-            "/interfaces/0/obstacle/temperature: found 310, which law 'coulomb' does not read: nothing is "
-            "conducted");
-  scene["interfaces"][0]["law"] = "conductance";
-  scene["interfaces"][0]["parameters"] = {{"conductance", 1}};
-  EXPECT_TRUE(scene_of(scene).warnings.empty());
 }
 
 // The block of docs/results/tyre_block.md.
