@@ -121,8 +121,8 @@ TEST(Layers, EveryFolderOfTheHostIsAFloor) {
 const std::vector<std::vector<std::string>> kit_rooms = {
     {"pack", "math", "vector", "symmetric", "roots", "table"},
     {"law", "state", "node"},
-    {"contact", "local_coulomb", "friction", "changing_friction",
-     "tangential_spring", "rolling", "rigid_bond", "window"},
+    {"contact", "local_coulomb", "friction", "changing_friction", "tangential_spring", "rolling",
+     "rigid_bond", "window"},
     {"plugin"}};
 
 std::size_t room_of(const std::string& header) {
