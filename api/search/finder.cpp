@@ -2,6 +2,7 @@
 #include "finder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace ilaw::search {
@@ -381,11 +382,30 @@ const Pair& Finder::pair_of(std::size_t point, std::int64_t& looked_at) {
   }
   if (!is_found) try_all(point, pair, looked_at);
   if (pair.facet < 0) return pair;
-  const Vec from = now_[point] - pair.at.point;
+  place_point(now_[point], pair);
+  if (!pair.is_at_border && pair.beside > rounding_rim() && pair.along < 0.0)
+    choose_facing(known, now_[point], pair, looked_at);
+  return pair;
+}
+
+void Finder::place_point(Vec p, Pair& pair) const {
+  const Vec from = p - pair.at.point;
   pair.along = dot(pair.at.normal, from);
   pair.beside = norm(from - pair.along * pair.at.normal);
   pair.is_at_border = surface_.is_at_border(pair.facet, pair.at);
-  return pair;
+}
+
+// Where several facets meet in the closest point, one may turn its back to a point that is in front of the
+// surface: the one that faces it most tells its side, of two that meet in an edge always.
+void Finder::choose_facing(const Known& known, Vec p, Pair& pair, std::int64_t& looked_at) const {
+  const double as_close = pair.at.distance + rounding_rim();
+  for (std::size_t k = 0; k < known.count; ++k) {
+    Pair other;
+    try_facet(known.facet[k], p, other, looked_at);
+    if (!(other.at.distance <= as_close)) continue;
+    place_point(p, other);
+    if (std::fabs(other.along) > std::fabs(pair.along)) pair = other;
+  }
 }
 
 void Finder::read_counts(ilaw_facets_counts& counts) const {

@@ -69,6 +69,8 @@ class Finder {
   bool try_known(const Known& known, std::size_t point, Pair& best, std::int64_t& looked_at) const;
   void try_all(std::size_t point, Pair& best, std::int64_t& looked_at) const;
   void try_facet(std::int32_t facet, Vec p, Pair& best, std::int64_t& looked_at) const;
+  void place_point(Vec p, Pair& pair) const;
+  void choose_facing(const Known& known, Vec p, Pair& pair, std::int64_t& looked_at) const;
   // Whether all points of a box are farther than horizon from the surface and in front of it. Lowers least to
   // a bound of their distance.
   bool is_apart(const Box& points, double horizon, Apart& least) const;

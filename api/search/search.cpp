@@ -49,11 +49,12 @@ struct Reading {
   int32_t place;
 };
 
-// A point beside a facet is nearest to its edge. Behind the plane of the facet it has to come over the facet
-// before it meets it; in front, it has the distance to go.
+// A point beside a facet is nearest to its edge. Behind the plane of the facet it is behind the surface, but
+// at a border it has to come over the facet before it meets it; in front, it has the distance to go.
 Reading read(const search::Pair& pair, double rim, double rounding) {
   const bool is_on_rim = pair.is_at_border && pair.beside <= rim && pair.along >= -rim;
-  if (pair.beside <= rounding || is_on_rim)
+  const bool is_behind = !pair.is_at_border && pair.along < 0.0;
+  if (pair.beside <= rounding || is_on_rim || is_behind)
     return {pair.along, pair.along > 0.0 ? pair.along : 0.0, ILAW_PLACE_OVER};
   const double distance = pair.at.distance, aside = pair.beside - (rim > rounding ? rim : rounding);
   const double approach = pair.along > 0.0 ? distance : aside > 0.0 ? aside : 0.0;

@@ -277,6 +277,39 @@ TEST(Facets, AreTheFirstOfEqualOnes) {
   }
 }
 
+// Over a grid the height of the surface is bilinear, which says on which side of it a point is: also behind
+// a fold, where a whole wedge of points has the edge for its closest place, and over sharp ridges.
+TEST(Facets, TellTheSideOfAPoint) {
+  Random draw(35);
+  const auto n = 6;
+  for (const double wave : {1e-3, 0.1, 0.5, 1.0}) {
+    std::vector<double> height;
+    for (int k = 0; k < (n + 1) * (n + 1); ++k) height.push_back(wave * draw(-1.0, 1.0));
+    const auto at = [&](int i, int j) { return height[static_cast<std::size_t>(j * (n + 1) + i)]; };
+    Searched all = face(n, false, [&](int i, int j) { return Point{double(i), double(j), at(i, j)}; });
+    std::vector<double> above;
+    for (int k = 0; k < 3000; ++k) {
+      const int i = static_cast<int>(draw(1.0, n - 1.0)), j = static_cast<int>(draw(1.0, n - 1.0));
+      const double x = k % 3 == 0 ? 0.0 : draw(0.0, 1.0), y = k % 2 == 0 ? 0.0 : draw(0.0, 1.0);
+      above.push_back(draw(-0.3, 0.3));
+      add_point(all, {i + x, j + y,
+                      above.back() + (1 - x) * (1 - y) * at(i, j) + x * (1 - y) * at(i + 1, j) +
+                          x * y * at(i + 1, j + 1) + (1 - x) * y * at(i, j + 1)});
+    }
+    all.open();
+    const Pairs found = all.all();
+    int behind_edges = 0;
+    for (std::size_t k = 0; k < above.size(); ++k) {
+      if (found.place[k] == ILAW_PLACE_BEYOND) continue;
+      EXPECT_EQ(found.gap[k] < 0.0, above[k] < 0.0)
+          << "wave " << wave << ", " << above[k] << " above: " << found.gap[k];
+      const double* const w = &found.weights[4 * k];
+      behind_edges += above[k] < 0.0 && *std::min_element(w, w + 4) == 0.0 ? 1 : 0;
+    }
+    EXPECT_GT(behind_edges, 100) << wave;
+  }
+}
+
 // ---- borders, and far from the origin -------------------------------------------------------------------
 
 TEST(Facets, GoOnByTheRim) {

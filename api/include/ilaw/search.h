@@ -91,8 +91,8 @@ typedef struct ilaw_facets_pairs_of {
 } ilaw_facets_pairs_of;
 
 enum {
-  ILAW_PLACE_OVER = 0,   /* the point is over the facet, or within the rim beside it */
-  ILAW_PLACE_BESIDE = 1, /* beside the closest facet: in a fold of the surface, or beyond rounding */
+  ILAW_PLACE_OVER = 0,   /* the point is over the facet, within the rim beside it, or behind a fold */
+  ILAW_PLACE_BESIDE = 1, /* in front of the surface, beside the closest facet by more than rounding */
   ILAW_PLACE_BEYOND = 2, /* beyond the border of the surface */
 };
 
