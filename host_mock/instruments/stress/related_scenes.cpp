@@ -328,6 +328,8 @@ Made in_other_units(const json& source, const Scene& read) {
 template <class Form>
 Made with_parameters(const json& source, const Scene& read, Form form) {
   RelatedScene made{source};
+  // Of constants a law sees that two directions are alike.
+  made.excuse = "tell the two tangential axes apart: expected a tangent";
   bool some = false;
   if (!has_each_interface(source, read)) return {};
   for (std::size_t i = 0; i < read.interfaces.size(); ++i) {

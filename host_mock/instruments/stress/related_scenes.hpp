@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace ilaw::host {
@@ -23,6 +24,11 @@ struct RelatedScene {
   double length = 1.0, time = 1.0;  // units
   double begin = 0.0;               // time of its start
   double farthest = 0.0;            // how far it lies from the first one
+  std::string excuse = {};          // a refusal of the related scene that says so is right
+
+  bool is_excused(const std::string& refusal) const {
+    return !excuse.empty() && refusal.find(excuse) != std::string::npos;
+  }
 };
 
 struct Relation {

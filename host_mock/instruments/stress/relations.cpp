@@ -348,6 +348,7 @@ class Check {
         size = difference.size;
         how = formatted("%s differs by %.2g", difference.where.c_str(), size);
       } catch (const SceneError& refusal) {
+        if (related->is_excused(refusal.what())) return;
         return fail(relation.name, std::string("is refused: ") + refusal.what());
       } catch (const std::exception& stop) {
         how = std::string("stops: ") + stop.what();
