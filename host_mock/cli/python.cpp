@@ -39,14 +39,15 @@ std::vector<std::string> given_to(const CLI::App& command) {
 
 [[noreturn]] void become(const std::string& module, const std::vector<std::string>& arguments,
                          const std::string& packages, const std::string& debian_packages) {
-  const std::filesystem::path package =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "share/ilaw/python";
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
+  const std::filesystem::path package = program.parent_path().parent_path() / "share/ilaw/python";
   if (!std::filesystem::is_directory(package / "ilaw"))
     throw std::runtime_error(package.string() +
                              ": found no such folder, expected the Python package of ilaw");
   // The package of this program comes before others of the same name.
   const char* const others = std::getenv("PYTHONPATH");
   setenv("PYTHONPATH", (package.string() + (others ? ":" + std::string(others) : "")).c_str(), 1);
+  setenv("ILAW_PROGRAM", program.c_str(), 1);  // which a command in Python starts
   std::fflush(nullptr);
   for (const std::string python : {"python3", "/usr/bin/python3"}) {
     // Found, not imported, which would take as long as the command itself.

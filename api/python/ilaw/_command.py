@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import fcntl
 import json
 import math
@@ -34,6 +35,15 @@ def complain(text: str, code: int) -> int:
 
 def interrupt(number: int, frame: Any) -> None:
     raise KeyboardInterrupt
+
+
+@contextlib.contextmanager
+def in_scene(file: Path) -> Iterator[None]:
+    """What is refused, with the file."""
+    try:
+        yield
+    except BadInput as reason:
+        raise BadInput(f"{file}: {reason}") from None
 
 
 def run_command(work: Callable[[], int]) -> int:

@@ -7,8 +7,8 @@ import math
 import sys
 from typing import Optional, Sequence
 
-from ._command import (DONE, FAILED, BadInput, HeldFolder, Progress, complain, remove_pictures, run_command,
-                       sweep_parser, text_of, write_csv, write_json)  # fmt: skip
+from ._command import (DONE, FAILED, HeldFolder, Progress, complain, in_scene, remove_pictures, run_command, sweep_parser,
+                       text_of, write_csv, write_json)  # fmt: skip
 from ._errors import NORMS, Trace, errors_against_exact, errors_against_run, order_of, scale_of
 from ._variants import (Failed, Scenes, check_mesh, exact_of, expect_watched, read_sweep, refined)  # fmt: skip
 
@@ -16,7 +16,7 @@ from ._variants import (Failed, Scenes, check_mesh, exact_of, expect_watched, re
 def converge(options: argparse.Namespace) -> int:
     (file,) = options.scenes
     with Scenes(file, options.threads) as scenes:
-        try:
+        with in_scene(file):
             source = scenes.read()
             sweep = read_sweep(source.get("converge", {}), options)
             check_mesh(source, sweep, "/converge")
@@ -24,18 +24,17 @@ def converge(options: argparse.Namespace) -> int:
             probe = scenes.probe(first)
             expect_watched(probe)
             exact = exact_of(first, probe)  # before anything is written
-        except BadInput as reason:
-            raise BadInput(f"{file}: {reason}") from None
         traces: list[Trace] = []
         errors = []
         interrupted = False
         with HeldFolder(options.out) as folder:
             total = sum(probe.steps * sweep.refinement(k) / sweep.refinement(0) for k in range(sweep.levels))
-            with Progress("converge", "steps", options.json_lines) as progress:
+            with in_scene(file), Progress("converge", "steps", options.json_lines) as progress:
                 try:
                     for level in range(sweep.levels):
                         scene = refined(source, sweep, sweep.refinement(level))
                         own = scenes.probe(scene)
+                        expect_watched(own, probe)
                         trace = scenes.trace(scene, own.interfaces)
                         if exact:
                             errors.append(errors_against_exact(exact_of(scene, own), trace))
@@ -47,6 +46,8 @@ def converge(options: argparse.Namespace) -> int:
                     return complain(str(failure), FAILED)
             if not exact:
                 errors = [errors_against_run(traces[-1], trace) for trace in traces[:-1]]
+            if not errors:
+                return complain(f"interrupted after {len(traces)} of {sweep.levels} runs, without an error", FAILED)
             orders = orders_of(traces, errors)
             remove_pictures(folder)
             write_csv(folder / "converge.csv", 10, ("dt", "steps", "seconds", *NORMS),

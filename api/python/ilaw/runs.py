@@ -17,7 +17,7 @@ import numpy as np
 from ._results import Run
 
 
-class RunFailed(Exception):
+class RunFailed(RuntimeError):
     """The program refused the scene, or the run failed; the message is the program's."""
 
 

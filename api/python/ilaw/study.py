@@ -11,8 +11,8 @@ import sys
 from pathlib import Path
 from typing import Callable, Iterator, Optional, Sequence
 
-from ._command import (DONE, FAILED, BadInput, HeldFolder, Progress, complain, print_rows, printable, remove_pictures,
-                       run_command, sweep_parser, text_of, write_csv, write_json)  # fmt: skip
+from ._command import (DONE, FAILED, BadInput, HeldFolder, Progress, complain, in_scene, print_rows, printable,
+                       remove_pictures, run_command, sweep_parser, text_of, write_csv, write_json)  # fmt: skip
 from ._errors import NO_ERRORS, NORMS, errors_against_exact, errors_against_run, scale_of
 from ._exact import Scene
 from ._variants import (Failed, Probe, Scenes, Sweep, check_mesh, exact_of, expect_watched, key_of, mistake, read_sweep,
@@ -150,7 +150,6 @@ class Study:
         self.probes: dict[float, Probe] = {}
         check_mesh(self.source, self.sweep, "/study")
         first, probe = self.own(self.sweep.refinement(0))
-        expect_watched(probe)
         self.interfaces = probe.interfaces
         self.exact = exact_of(first, probe) is not None
         self.reference = "exact solution" if self.exact else "finest run of the first law"
@@ -170,6 +169,7 @@ class Study:
         scene, key = refined(self.source, self.sweep, refinement), refinement if self.sweep.with_mesh else 1.0
         if key not in self.probes:
             self.probes[key] = self.scenes.probe(scene)
+            expect_watched(self.probes[key], next(iter(self.probes.values())))
         probe = self.probes[key]
         dt = scene["time"][self.key] * probe.unit
         return scene, probe._replace(dt=dt, steps=steps_of(scene["time"]["end"], dt))
@@ -194,6 +194,8 @@ class Study:
             self.scenes.probe(self.with_entry(entry, self.sweep.refinement(0), 1.0)[0])
         except BadInput as reason:
             raise BadInput(f"with law '{name_of(entry)}': {reason}") from None
+        except Failed:
+            pass  # a smaller step may do
 
     def weight(self, level: int) -> float:
         """Work is told in runs of level 0."""
@@ -344,22 +346,20 @@ def print_study(study: Study, title: str) -> None:
 
 def study_scene(file: Path, folder: Path, options: argparse.Namespace) -> int:
     with Scenes(file, options.threads) as scenes:
-        try:
+        with in_scene(file):
             study = Study(scenes, options)
-            title = study.source.get("title", file.stem)
-            interrupted = False
-            with HeldFolder(folder):
-                with Progress("study", "runs", options.json_lines) as progress:
-                    try:
-                        study.run(progress)
-                    except KeyboardInterrupt:
-                        interrupted = True
-                if not study.laws:
-                    return complain("interrupted before any run", FAILED)
-                remove_pictures(folder)
-                write(study, title, folder)
-        except BadInput as reason:
-            raise BadInput(f"{file}: {reason}") from None
+        title = study.source.get("title", file.stem)
+        interrupted = False
+        with HeldFolder(folder):
+            with in_scene(file), Progress("study", "runs", options.json_lines) as progress:
+                try:
+                    study.run(progress)
+                except KeyboardInterrupt:
+                    interrupted = True
+            if not study.laws:
+                return complain("interrupted before any run", FAILED)
+            remove_pictures(folder)
+            write(study, title, folder)
     print_study(study, title)
     return complain("interrupted; the runs so far are written", FAILED) if interrupted else DONE
 

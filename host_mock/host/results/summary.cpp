@@ -18,6 +18,9 @@ using nlohmann::json;
 constexpr const char* status_names[ILAW_STATUS_COUNT] = {"free",   "closed", "stick",  "slip",
                                                          "bonded", "broken", "healed", "bad_input"};
 
+// JSON has no infinity: scenes write it as text, too.
+json number_or_inf(double value) { return std::isinf(value) ? json("inf") : json(value); }
+
 json describe_amounts(const Interface& interface) {
   json amounts = json::object();
   for (std::size_t k = 0; k < interface.amounts().size(); ++k)
@@ -35,7 +38,7 @@ json describe_interface(const Scene& scene, const Interface& interface, double f
           {"library", interface.library().path()},
           {"library_version", interface.library().plugin().version},
           {"nodes", interface.nodes().size()},
-          {"least_mass", least_mass},
+          {"least_mass", number_or_inf(least_mass)},
           {"first_contact", std::isinf(first_contact) ? json() : json(first_contact)},
           {"state_size", interface.info().state_size},
           {"amounts", describe_amounts(interface)},
@@ -80,9 +83,6 @@ json describe_heat(const HeatReport& heat) {
           {"lowest_temperature", heat.lowest},
           {"highest_temperature", heat.highest}};
 }
-
-// JSON has no infinity: scenes write it as text, too.
-json number_or_inf(double value) { return std::isinf(value) ? json("inf") : json(value); }
 
 json describe_statuses(const Tally& tally) {
   json counts = json::object();

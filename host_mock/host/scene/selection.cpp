@@ -57,26 +57,28 @@ int node_of(const json& number, const Model& model, const std::string& pointer) 
   throw mistake(pointer, "node " + number.dump(), "0 to " + std::to_string(model.node_count() - 1));
 }
 
-// Nodes in the order in which a scene names them.
+// Nodes of a set in the order in which a scene names them.
 class Distinct {
  public:
-  void add(int node, const std::string& pointer) {
-    if (!seen_.insert(node).second)
-      throw mistake(pointer, "node " + std::to_string(node) + " twice", "each node once");
-    indices_.push_back(static_cast<std::size_t>(node));
+  explicit Distinct(const NodeSet& set) : set_(set) {}
+  void add(std::size_t index, const std::string& pointer) {
+    if (!seen_.insert(index).second)
+      throw mistake(pointer, "node " + std::to_string(set_.nodes[index]) + " twice", "each node once");
+    indices_.push_back(index);
   }
-  const std::vector<std::size_t>& indices() const { return indices_; }
+  NodeSet part() const { return part_of(set_, indices_); }
 
  private:
-  std::set<int> seen_;
+  const NodeSet& set_;
+  std::set<std::size_t> seen_;
   std::vector<std::size_t> indices_;
 };
 
 NodeSet listed(const json& numbers, const Model& model, const std::string& pointer) {
-  Distinct nodes;
+  Distinct nodes(model.sets().at("all"));
   for (std::size_t k = 0; k < numbers.size(); ++k)
-    nodes.add(node_of(numbers[k], model, at(pointer, k)), at(pointer, k));
-  return part_of(model.sets().at("all"), nodes.indices());
+    nodes.add(static_cast<std::size_t>(node_of(numbers[k], model, at(pointer, k))), at(pointer, k));
+  return nodes.part();
 }
 
 // The sets that name a body and have the node.
@@ -104,7 +106,7 @@ std::size_t nearest(const Vector& x, const NodeSet& set, const Model& model, con
       throw mistake(
           pointer,
           bodies_of(set.nodes[best], model) + " and " + bodies_of(set.nodes[k], model) + " at one place",
-          "one node there: name its body or face with 'of'");
+          "one node there: name its body or face with 'of', or give its number");
   return best;
 }
 
@@ -113,9 +115,9 @@ NodeSet nearest_of(const json& selection, const Model& model, const std::string&
   const NodeSet& set = find_set(selection.value("of", "all"), model, false, selection_pointer + "/of");
   const json& places = selection["near"];
   const std::string pointer = selection_pointer + "/near";
-  Distinct nodes;
+  Distinct nodes(set);
   const auto add = [&](const json& place, const std::string& where) {
-    nodes.add(set.nodes[nearest(read_vector(place, model.dimension(), where), set, model, where)], where);
+    nodes.add(nearest(read_vector(place, model.dimension(), where), set, model, where), where);
   };
   const auto numbers =
       std::count_if(places.begin(), places.end(), [](const json& one) { return one.is_number(); });
@@ -125,7 +127,7 @@ NodeSet nearest_of(const json& selection, const Model& model, const std::string&
     if (numbers > 0) throw mistake(pointer, places.dump(), "a place, or a list of places");
     for (std::size_t k = 0; k < places.size(); ++k) add(places[k], at(pointer, k));
   }
-  return part_of(model.sets().at("all"), nodes.indices());
+  return nodes.part();
 }
 
 NodeSet inside(const json& selection, const Model& model, const std::string& pointer) {

@@ -228,7 +228,8 @@ std::string coarse_zone(const Scene& scene, const Interface& interface, const js
   if (moduli.size() != 1 || strength == numbers.end() || toughness == numbers.end()) return "";
   const double zone = *moduli.begin() * toughness->second / (strength->second * strength->second),
                edge = shortest_edge(*scene.model);
-  if (!(least_elements * edge > zone)) return "";
+  const bool breaks = zone > 0.0;  // neither a bond of infinite strength nor one without toughness has a zone
+  if (!breaks || !(least_elements * edge > zone)) return "";
   return "found " + number(strength->second) + ", at which the failure zone is " + number(zone) +
          " long, and the shortest edge of an element is " + number(edge) +
          ": fracture follows the mesh unless the zone has three elements";

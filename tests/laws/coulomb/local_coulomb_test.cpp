@@ -84,7 +84,7 @@ TEST(CoulombDelassus, RestitutionCreatesNoEnergyWhereHCouples) {
 }
 
 // H = diag(h_N, h_1, h_2): r_N = -q_N/h_N stands alone, and sliding is r_i = -q_i/(h_i + a) with a > 0 the
-// root of |r_T| = mu r_N, which decreases in a. regular_coulomb.hpp gives r_N as |r_T|/mu after Newton steps
+// root of |r_T| = mu r_N, which decreases in a. local_coulomb.hpp gives r_N as |r_T|/mu after Newton steps
 // on 1/|r_T| = 1/(mu r_N): eight roundings of 2^-53 lie between |r_T| and q_N/h_N, 4 ulp. A step from the
 // relative error 2^-13 leaves 3/2 k 2^-26, with k the variance of 1/(h_i + a), weighted by r_i^2, over its
 // mean squared, and the last one, on |r_T|, (1 + 3/2 k) times the square of that.
