@@ -472,6 +472,37 @@ def test_files_beside_the_scene_are_found(tmp_path):
     assert len(rows) == 2
 
 
+def test_a_run_that_fails_is_told_in_a_sentence(tmp_path):
+    scene = ball()
+    scene["model"]["points"][0]["velocity"], scene["time"] = [1e308], {"dt": 10, "end": 100}
+    (tmp_path / "scene.json").write_text(json.dumps(scene))
+    for command in ("converge", "study"):
+        done = program(command, tmp_path / "scene.json", "--out", tmp_path / "out")
+        assert done.returncode == 1 and done.stderr.startswith("ilaw: ") and "Traceback" not in done.stderr
+
+
+def test_other_nodes_on_a_finer_mesh_are_refused(tmp_path):
+    """A box with a quarter of the bar holds more nodes of each finer mesh."""
+    scene = shipped("held_rod")
+    del scene["exact"]
+    scene["output"]["watch"] = [{"box": [[0.0], [0.25 * scene["model"]["bars"][0]["length"]]]}]
+    (tmp_path / "scene.json").write_text(json.dumps(scene))
+    done = program("converge", tmp_path / "scene.json", "--refine", "mesh", "--levels", "3", "--out", tmp_path / "out")
+    assert done.returncode == 2 and "scene.json: /output/watch: found " in done.stderr and "on two meshes" in done.stderr
+    assert not (tmp_path / "out/converge.csv").exists()
+
+
+def test_expectations_of_a_scene_are_read(tmp_path):
+    scene = ball()
+    scene["expect"] = [{"what": "no.such.thing", "value": 0, "tolerance": 1, "because": "unknown"}]
+    (tmp_path / "scene.json").write_text("\ufeff" + json.dumps(scene), encoding="utf-8")
+    done = program("converge", tmp_path / "scene.json", "--out", tmp_path / "out")
+    assert done.returncode == 2 and "/expect/0/what: " in done.stderr
+    scene["expect"][0] = {"what": "n0.u0", "value": 1e9, "tolerance": 0, "because": "a motion that is compared may miss it"}
+    (tmp_path / "scene.json").write_text("\ufeff" + json.dumps(scene), encoding="utf-8")
+    assert program("converge", tmp_path / "scene.json", "--levels", "3", "--out", tmp_path / "out").returncode == 0
+
+
 def test_an_interrupt_leaves_what_is_complete(tmp_path):
     """SIGINT as from a terminal, to all processes of the command, once the third of 12 runs has begun."""
     scene = ball()

@@ -422,11 +422,12 @@ def glued_bar(case: Case, wanted: str) -> Exact:
     bar, memory = Bar(case.body), case.parameters.get("memory", 0.0)
     force = case.loads[0]["history"][0][1] * case.loads[0]["direction"][0]
     adhesion = case.parameters["initial_adhesion"] * bar.section
-    require(isinstance(memory, (int, float)) and force > 0.0, wanted)
+    require(isinstance(memory, (int, float)), wanted)
+    window = "a window longer than R_Y/(2F), and an end before the next reflection at 3L/c"
+    require(force > 0.0, window)
     arrives = bar.length / bar.speed
     breaks = arrives + adhesion / (2.0 * force)
-    require(memory > adhesion / (2.0 * force) and breaks < 3.0 * arrives and case.end <= 3.0 * arrives,
-            "a window longer than R_Y/(2F), and an end before the next reflection at 3L/c")  # fmt: skip
+    require(memory > adhesion / (2.0 * force) and breaks < 3.0 * arrives and case.end <= 3.0 * arrives, window)
     return of_paths([constant_between([breaks], [0.0, 2.0 * force / bar.impedance])], [instants_of(rupture=breaks)],
                     impulse=pushes(-2.0 * force, arrives, breaks), work=no_work,
                     energy=2.0 * force**2 * bar.length / bar.stiffness)  # fmt: skip
