@@ -52,7 +52,7 @@ std::vector<std::string> given_to(const CLI::App& command) {
   for (const std::string python : {"python3", "/usr/bin/python3"}) {
     // Found, not imported, which would take as long as the command itself.
     const std::string look = " -B -c 'from importlib.util import find_spec as f; exit(not all(map(f, \"" +
-                             packages + "\".split())))' 2> /dev/null";
+                             packages + "\".split(\", \"))))' 2> /dev/null";
     if (std::system((python + look).c_str()) != 0) continue;
     std::vector<std::string> words = {python, "-B", "-m", module};
     words.insert(words.end(), arguments.begin(), arguments.end());
