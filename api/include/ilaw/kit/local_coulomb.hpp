@@ -2,11 +2,11 @@
 //
 //   v = q + H r,  0 <= v_N _|_ r_N >= 0,  |(r_1/mu_1, r_2/mu_2)| <= r_N,  r_T dissipates at most.
 //
-// The regular solver, for a double or a pack of them, serves weak coupling (one solution), a fair condition and
-// no extreme coefficient. Its answer is checked in the rows of the problem itself; what fails is left to the
-// exact solver, which serves any problem. The derivation, and which solution is given where there are several,
-// is in docs/theory/local_coulomb.md. Only + - * / and square roots: the same bits on every processor. No
-// allocation, no state; any thread.
+// The regular solver, for a double or a pack of them, serves weak coupling (one solution), a fair condition
+// and no extreme coefficient. Its answer is checked in the rows of the problem itself; what fails is left to
+// the exact solver, which serves any problem. The derivation, and which solution is given where there are
+// several, is in docs/theory/local_coulomb.md. Only + - * / and square roots: the same bits on every
+// processor. No allocation, no state; any thread.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,7 +15,6 @@
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // ---- the regular solver
-
 
 // h: H00 H11 H22 H01 H02 H12 [1/kg], component 0 normal; q [m/s]; mu: coefficient of each tangential axis, >=
 // 0, infinity allowed (no slip along this axis while the contact is pressed).
