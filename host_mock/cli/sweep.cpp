@@ -31,27 +31,20 @@ struct Setting {
   std::vector<json> values;
 };
 
-// At commas that are not inside brackets or quotes.
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts(1);
-  int depth = 0;
-  bool quoted = false;
-  for (const char c : text) {
-    if (c == '"') quoted = !quoted;
-    if (!quoted && (c == '[' || c == '{')) ++depth;
-    if (!quoted && (c == ']' || c == '}')) --depth;
-    if (c == ',' && depth == 0 && !quoted)
-      parts.emplace_back();
-    else
-      parts.back() += c;
+// Between commas: the shortest text that is JSON, or a word.
+std::vector<json> values_of(const std::string& text) {
+  const auto end_from = [&](std::size_t from) { return std::min(text.find(',', from), text.size()); };
+  std::vector<json> values;
+  for (std::size_t begin = 0, end = 0; begin <= text.size(); begin = end + 1) {
+    json value = json::parse(text.substr(begin, (end = end_from(begin)) - begin), nullptr, false);
+    for (std::size_t to = end; value.is_discarded() && to < text.size();) {
+      to = end_from(to + 1);
+      value = json::parse(text.substr(begin, to - begin), nullptr, false);
+      if (!value.is_discarded()) end = to;
+    }
+    values.push_back(value.is_discarded() ? json(text.substr(begin, end - begin)) : std::move(value));
   }
-  return parts;
-}
-
-// A word that is no JSON is a string.
-json value_of(const std::string& text) {
-  json value = json::parse(text, nullptr, false);
-  return value.is_discarded() ? json(text) : value;
+  return values;
 }
 
 Setting parse_setting(const std::string& text) {
@@ -61,7 +54,7 @@ Setting parse_setting(const std::string& text) {
   try {
     Setting setting{json::json_pointer(text.substr(0, sign)), "", {}};
     setting.name = setting.pointer.back();
-    for (const std::string& part : split(text.substr(sign + 1))) setting.values.push_back(value_of(part));
+    setting.values = values_of(text.substr(sign + 1));
     return setting;
   } catch (const json::exception&) {
     throw SceneError("--set " + text, "expected a JSON pointer before '='");

@@ -166,6 +166,7 @@ TEST(Sweep, TellsValuesAndNamesApart) {
   for (const auto& [settings, names] : std::map<std::string, std::vector<std::string>>{
            {"--set '/model/points/0/velocity=[2,0],[1,0]'", {"velocity=2_0", "velocity=1_0"}},
            {"--set '/title=\"a, b\",c'", {"title=a_b", "title=c"}},
+           {"--set '/title=\"a\\\", b\",\"c\"'", {"title=a_b", "title=c"}},
            {"--set /model/points/0/velocity/0=1 --set /model/points/0/position/0=2,2",
             {"model.points.0.velocity.0=1_model.points.0.position.0=2",
              "model.points.0.velocity.0=1_model.points.0.position.0=2_1"}}}) {
