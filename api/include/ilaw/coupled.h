@@ -129,7 +129,8 @@ typedef struct ilaw_coupled_options {
   uint32_t struct_size;
   uint32_t most_sweeps;          /* largest number of iterations; 0: 1000. From 10 to 100: up to 20 Newton
                                     steps more for coupled sets of at most 32 contacts that are off by 1e-3 */
-  double tolerance;              /* of the residual; 0: 1e-10 */
+  double tolerance;              /* of the residual; 0: 1e-10. A gap that this part of the speed of its bodies
+                                    closes in a step counts as closed */
   const ilaw_exchange* exchange; /* null: one process */
   double speed;                  /* the residual is relative to no smaller velocity; 0: only to that at which
                                     the tolerance is the rounding of the largest speed of the bodies */

@@ -17,8 +17,10 @@ namespace {
 
 // Of a velocity, in the scale of the step: contacts that share nodes are solved to 1e-10 of it.
 constexpr double law_bound = 1e-8;
-// An answer that jumps (a rupture, a contact that closes) is judged at velocities and gaps off by this, too.
+// An answer that jumps (a rupture, a contact that closes) is judged at velocities and gaps off by this, too;
+// a gap that this part of the velocity closes in a step counts as closed for contacts that share nodes.
 constexpr double jump = 1e-9;
+constexpr double closing = 1e-10;
 constexpr double energy_bound = 1e-7;
 constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
 
@@ -196,9 +198,9 @@ bool AuditedInterface::is_final_rupture(int node_index) const {
 
 void AuditedInterface::check_node(int node_index, const AuditedStep& step) {
   const Call call = call_of(node_index, step);
-  const double rounded = rounding * step.farthest;
   const Vector change = call.delassus.cwiseProduct(call.impulse);
   const double speed = std::max({step.speed, call.v_free.norm(), call.v_previous.norm(), change.norm()});
+  const double rounded = std::max(rounding * step.farthest, closing * speed * step.dt);
   const double bound = law_bound * speed + rounded / step.dt;
   work_scale_ += call.impulse.norm() * (call.v_free.norm() + call.v_previous.norm() + change.norm()) +
                  call.impulse.norm() * step.speed;

@@ -135,7 +135,8 @@ class Judge {
          ledger.work(), most_work);
     hold("dissipation of a node", -energy.least_dissipation, ledger.dissipation_bound(), ledger.work(),
          most_work);
-    hold("penetration", ledger.penetration().value, ledger.penetration_bound(), ledger.penetration());
+    if (tally.unconverged == 0)  // else laws were not obeyed, as the run says
+      hold("penetration", ledger.penetration().value, ledger.penetration_bound(), ledger.penetration());
     hold("velocities", ledger.worst_velocity(), 1.0);
   }
 
