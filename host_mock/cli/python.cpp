@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/python.hpp"
 
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -53,8 +54,14 @@ std::vector<std::string> given_to(const CLI::App& command) {
     // Found, not imported, which would take as long as the command itself.
     const std::string look = " -B -c 'from importlib.util import find_spec as f; exit(not all(map(f, \"" +
                              packages + "\".split(\", \"))))' 2> /dev/null";
-    if (std::system((python + look).c_str()) != 0) continue;
-    std::vector<std::string> words = {python, "-B", "-m", module};
+    const int code = std::system((python + look).c_str());
+    if (WIFSIGNALED(code) || WEXITSTATUS(code) > 128) throw std::runtime_error("interrupted");
+    if (code != 0) continue;
+    // Until the module is there to say so, an interrupt just ends it.
+    const std::string start =
+        "import runpy, signal as s; s.getsignal(2) == s.SIG_IGN or s.signal(2, s.SIG_DFL); runpy.run_module('" +
+        module + "', run_name='__main__', alter_sys=True)";
+    std::vector<std::string> words = {python, "-B", "-c", start};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
     std::transform(words.begin(), words.end(), std::back_inserter(pointers),

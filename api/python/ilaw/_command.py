@@ -39,16 +39,18 @@ def interrupt(number: int, frame: Any) -> None:
 
 @contextlib.contextmanager
 def in_scene(file: Path) -> Iterator[None]:
-    """What is refused, with the file."""
+    """What is refused or fails, with the file."""
     try:
         yield
     except BadInput as reason:
         raise BadInput(f"{file}: {reason}") from None
+    except RuntimeError as reason:
+        raise RuntimeError(f"{file}: {reason}") from None
 
 
 def run_command(work: Callable[[], int]) -> int:
     """The exit code of a command; says on stderr what was wrong."""
-    for number in (signal.SIGTERM, signal.SIGHUP):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, interrupt)
     try:

@@ -502,6 +502,32 @@ SOLUTIONS: dict[str, tuple[Callable[[Case, str], Exact], tuple[str, int], str]] 
 }  # fmt: skip
 
 
+# Keys that solutions read, or that change no motion.
+COVERED = {
+    "scene": "title doc units sets model time initial loads interfaces output exact converge study expect",
+    "points": "mass position velocity stiffness area",
+    "bars": "name start length elements young density section velocity",
+    "interface": "name law library parameters nodes obstacle against skip",
+    "obstacle": "type point normal", "against": "nodes normal",
+    "gravity": "type name acceleration", "force": "type name nodes direction history",
+    "shock": "type name nodes time impulse", "motion": "type name nodes", "bulk_viscosity": "type name linear quadratic",
+}  # fmt: skip
+
+
+def check_keys(scene: Scene, name: str, kind: str) -> None:
+    """Refuses a key that may change the motion and that no solution knows."""
+    parts = [("scene", "", scene)]
+    parts += [(kind, f"/model/{kind}/{k}", body) for k, body in enumerate(scene["model"][kind])]
+    parts += [(load["type"], f"/loads/{k}", load) for k, load in enumerate(scene.get("loads", []))]
+    for k, interface in enumerate(scene["interfaces"]):
+        parts += [("interface", f"/interfaces/{k}", interface)]
+        parts += [(key, f"/interfaces/{k}/{key}", interface[key]) for key in ("obstacle", "against") if key in interface]
+    for what, pointer, part in parts:
+        springs = {"stiffness"} if name != "impact_oscillator" else set()
+        for key in sorted(part.keys() - (set(COVERED[what].split()) - springs)):
+            raise BadInput(f"{pointer}/{key}: found a key that the closed form '{name}' does not know, expected none")
+
+
 def exact_solution(scene: Scene, watched: int, steps: int, dt: float) -> Optional[Exact]:
     """None if the scene names none; refuses a scene that the named solution does not cover."""
     if "exact" not in scene:
@@ -520,6 +546,8 @@ def exact_solution(scene: Scene, watched: int, steps: int, dt: float) -> Optiona
     model = scene["model"]
     require(model["type"] == kind and len(model[kind]) == bodies, wanted)
     try:
-        return solution(Case(scene, model[kind][0], scene["interfaces"][0], loads, dt * steps, dt), wanted)
+        exact = solution(Case(scene, model[kind][0], scene["interfaces"][0], loads, dt * steps, dt), wanted)
+        check_keys(scene, name, kind)
+        return exact
     except (KeyError, IndexError, TypeError, ValueError):  # a key is missing that the solution needs
         raise BadInput(f"/exact: expected {wanted}") from None

@@ -43,7 +43,7 @@ def converge(options: argparse.Namespace) -> int:
                 except KeyboardInterrupt:
                     interrupted = True
                 except Failed as failure:
-                    return complain(str(failure), FAILED)
+                    raise Failed(f"run {len(traces) + 1} of {sweep.levels}: {failure}") from None
             if not exact:
                 errors = [errors_against_run(traces[-1], trace) for trace in traces[:-1]]
             if not errors:
