@@ -295,7 +295,7 @@ std::string describe(const std::string& name_or_path) {
 // The library's path and its laws, as a child process found them.
 Left open(const std::string& name_or_path, const Options& options, std::vector<Outcome>& outcomes) {
   const Ending ending = run_apart(options.limits, [&] { return describe(name_or_path); });
-  const Left left = ending.returned ? unpacked(ending.result) : Left{};
+  Left left = ending.returned ? unpacked(ending.result) : Left{};
   if (!left.missing.empty()) throw UsageError(left.missing);
   const Outcome outcome = outcome_of("", opens_id, ending);
   if (outcome.verdict != Verdict::passed || wanted(rule_of(opens_id), options)) outcomes.push_back(outcome);

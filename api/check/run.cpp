@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
 #include <map>
 
 namespace ilaw::check {
@@ -43,6 +44,7 @@ Vector Results::moment_at(std::size_t node) const {
 
 std::vector<Results::Numbers> Results::numbers() const {
   std::vector<Numbers> all;
+  all.reserve(std::size(output_arrays) + amounts.size());
   for (const OutputArray& array : output_arrays)
     all.push_back({array.name, &(this->*array.values), array.asked});
   for (const std::vector<double>& amount : amounts) all.push_back({"amounts", &amount, amounts_output});

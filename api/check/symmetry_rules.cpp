@@ -205,8 +205,8 @@ void expect_carried(const Trial& trial, const Trial& in_host, Draw& draw) {
   const std::vector<Results> plain = run(trial, script),
                              unturned = run(in_host, in_axes(script, still, in_host.setup)),
                              found = run(in_host, in_axes(script, axes, in_host.setup));
-  std::vector<std::vector<Results>> shaken;
-  for (int n = 0; n < shakes; ++n) shaken.push_back(run_shaken(trial, script, draw));
+  std::vector<std::vector<Results>> shaken(shakes);
+  for (std::vector<Results>& of : shaken) of = run_shaken(trial, script, draw);
   std::vector<bool> is_judged(count, true);
   for (std::size_t k = 0; k < script.size(); ++k) {
     for (const std::vector<Results>& of : shaken)
