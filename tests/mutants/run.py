@@ -357,7 +357,8 @@ def judge_changed(mutants, tests, jobs, deadline):
     try:
         mutants = build_fresh(mutants, tests, jobs, deadline)
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-            usual = seconds_of_tests()
+            measured = seconds_of_tests()
+            usual = {test: measured[test.partition(":")[0]] for test in tests}
             for mutant, (end, ran) in zip(mutants, pool.map(lambda one: caught_in_time(one, usual, deadline), mutants)):
                 found.append(end)
                 word = {True: "caught", False: "SURVIVED", None: "no time"}[end]

@@ -278,7 +278,7 @@ def test_a_ball_rolls_out(tmp_path, dt):
 
 # Pressed together by F: one pair turns like two gears, the other about the line of its centres. Each grain loses
 # rho F or tau F of its spin's moment, the other grain's being the opposite.
-@pytest.mark.parametrize("dt, ranks", some(("1e-4", 1), ("3.7e-4", 2), ("7.3e-4", 4)))
+@pytest.mark.parametrize("dt, ranks", some(("1e-4", 2), ("3.7e-4", 1), ("7.3e-4", 4)))
 def test_moments_act_on_both_grains_of_a_pair(tmp_path, dt, ranks):
     force, spin = 2.0, 10.0
     inertia = 0.4 * MASS_OF_BALL * RADIUS**2
