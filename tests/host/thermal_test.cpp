@@ -4,11 +4,16 @@
 #include "run_result.hpp"
 #include "thermal_scenes.hpp"
 
+#include "contact/contact_heat.hpp"
+
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <sstream>
+#include <vector>
 
 namespace ilaw::host::testing::thermal {
 namespace {
@@ -118,6 +123,28 @@ TEST(Thermal, ExchangesHeatWithinAFacet) {
                     400 - weights[static_cast<std::size_t>(k)] * heat / capacity[4], 1e-10);
       EXPECT_LT(integrator.temperatures()->report().balance_error, 1e-13);
     }
+}
+
+// What a law reads: the mean of each side by its weights, and the capacity that heat meets if it is divided
+// as the impulse is. The own side is that of a mortar, of two nodes.
+TEST(ContactHeat, GivesTheLawTheMeanOfEachSide) {
+  const std::vector<double> temperature{300, 340, 400, 500}, capacity{2, 3, 5, 7};
+  ilaw_instance_info info{};
+  info.per_node_parameters = ContactHeat::field_names.data();
+  info.per_node_parameter_count = ContactHeat::field_names.size();
+  ContactHeat heat(info, std::nullopt);
+  heat.read(temperature.data(), capacity.data());
+  ContactPoint point;
+  point.own_weight = 0.7;
+  point.own_partners = 1;
+  point.partners = {{1, -0.3}, {2, 0.9}, {3, 0.1}};
+  ContactArrays contacts(3, info, 1, true);
+  contacts.parameters.assign(ContactHeat::field_names.size(), {0.0});
+  heat.give(0, 0, point, contacts);
+  const std::array expected{0.7 * 300 + 0.3 * 340, 0.9 * 400 + 0.1 * 500, 1 / (0.49 / 2 + 0.09 / 3),
+                            1 / (0.81 / 5 + 0.01 / 7)};
+  for (std::size_t k = 0; k < expected.size(); ++k)
+    EXPECT_NEAR(contacts.parameters[k][0], expected[k], 1e-12 * expected[k]) << ContactHeat::field_names[k];
 }
 
 // Conduction and contact at their limits together: no node leaves the range of the start. With both at once,
