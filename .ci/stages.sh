@@ -9,7 +9,7 @@ export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time
 night_tests='^(installed\.(packages|reproducible)|new_law\.needs_no_edit_elsewhere|template_repository|pages\.site|view\.(browser|notebooks)|protocols|migration)$'
 
 # Scenes that take over ten seconds under sanitizers.
-long='block_impact|dcb_peel|half_model|mixed_mode_bar|pedestal|postit_3d|settled_stack|two_blocks|tyre_block'
+long='block_impact|dcb_peel|half_model|mixed_mode_bar|pedestal|postit_3d|settled_stack|stopper|two_blocks|tyre_block'
 
 rows=() failed=0
 
