@@ -93,7 +93,10 @@ void Arrays::make_list() {
 }
 
 Field Arrays::made(const char* name, std::size_t width, Use use, ilaw_number_type numbers) {
-  return Field(memory_, name, width, room_, layout_.order, use, numbers, made_++ % 3);
+  const Order order = name == output_arrays[state_place].name
+                          ? layout_.order_of_state_out.value_or(layout_.order)
+                          : layout_.order;
+  return Field(memory_, name, width, room_, order, use, numbers, made_++ % 3);
 }
 
 void Arrays::make_inputs(const Inputs& first) {

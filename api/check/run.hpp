@@ -23,6 +23,7 @@ inline constexpr std::uint32_t all_outputs =
 
 struct Layout {
   Order order = Order::interleaved;
+  std::optional<Order> order_of_state_out{};
   List list = List::none;
   std::int32_t index_base = 0;
   std::size_t spare = 0;  // nodes of the arrays that are on no list

@@ -180,6 +180,7 @@ TEST(OtherWays, OfBreakingARuleAreSeenToo) {
       {"frame-indifference: backward", "in axes of the host"},
       {"table-linear: beyond", "over time {0.25, 0.75, 1} at (1.125)"},
       {"layout-strides: negative", "with negative strides, step "},
+      {"layout-strides: state", "with strides of state_out alone, step "},
       {"energy-balance: position step", "a rest of "},
       {"report-null: refused", "without a report evaluate returned -"},
       {"report-clean: step", "stable_velocity_step nan"},

@@ -31,13 +31,14 @@ ilaw_delassus_form form_of(const Interface& interface) {
 
 }  // namespace
 
-AuditedInterface::AuditedInterface(const Interface& interface, const Model& model)
+AuditedInterface::AuditedInterface(const Interface& interface, const Model& model, bool is_coupled)
     : interface_(interface),
       model_(model),
       d_(model.dimension()),
       law_(create_law(interface.setup().law, interface.setup().arguments, interface.setup().tangent,
                       interface.library(), d_, form_of(interface))),
       axes_(interface.axes()),
+      is_coupled_(is_coupled),
       is_rigid_(is_rigid(model)),
       states_(interface.nodes().size()) {}
 
@@ -200,7 +201,7 @@ void AuditedInterface::check_node(int node_index, const AuditedStep& step) {
   const Call call = call_of(node_index, step);
   const Vector change = call.delassus.cwiseProduct(call.impulse);
   const double speed = std::max({step.speed, call.v_free.norm(), call.v_previous.norm(), change.norm()});
-  const double rounded = std::max(rounding * step.farthest, closing * speed * step.dt);
+  const double rounded = std::max(rounding * step.farthest, is_coupled_ ? closing * speed * step.dt : 0.0);
   const double bound = law_bound * speed + rounded / step.dt;
   work_scale_ += call.impulse.norm() * (call.v_free.norm() + call.v_previous.norm() + change.norm()) +
                  call.impulse.norm() * step.speed;

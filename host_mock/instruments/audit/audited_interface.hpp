@@ -23,7 +23,8 @@ struct AuditedStep {
 
 class AuditedInterface {
  public:
-  AuditedInterface(const Interface& interface, const Model& model);
+  // is_coupled: contacts of it share nodes with others, so that they are solved to a residual.
+  AuditedInterface(const Interface& interface, const Model& model, bool is_coupled);
 
   // Before a step: the memory of its law.
   void open(const Dofs& u);
@@ -59,7 +60,7 @@ class AuditedInterface {
   const int d_;
   ilaw::interface law_;
   std::vector<std::size_t> axes_;
-  bool is_rigid_ = false;
+  bool is_coupled_, is_rigid_ = false;
   std::vector<std::vector<double>> states_;  // by node_index, before the step
   std::array<double, ILAW_ENERGY_COUNT> energy_{};
   double work_scale_ = 0.0, work_rounding_ = 0.0;  // of a step
