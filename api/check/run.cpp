@@ -5,10 +5,7 @@
 #include "check/sandbox.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <iterator>
 #include <map>
 
@@ -36,10 +33,6 @@ std::string text_of(const Vector& a, std::size_t dimension) {
   std::string text = "(";
   for (std::size_t c = 0; c < dimension; ++c) text += (c ? ", " : "") + text_of(a[c]);
   return text + ")";
-}
-
-Vector Results::moment_at(std::size_t node) const {
-  return moment.empty() ? Vector{} : vector_of(moment, node, 3);
 }
 
 std::vector<Results::Numbers> Results::numbers() const {
@@ -234,14 +227,6 @@ std::vector<double> Arrays::take(const Field& field) const {
 }
 
 std::vector<double> Arrays::state() { return take(state_out()); }
-
-std::vector<double> Arrays::written() {
-  std::vector<double> all;
-  for_outputs([&](const Field& field) {
-    for (const double value : take(field)) all.push_back(value);
-  });
-  return all;
-}
 
 Results Arrays::results(std::int32_t code) {
   Results results{places_.size(), code, report_};
