@@ -11,7 +11,7 @@
 #include <ilaw/coupled.hpp>
 #include <ilaw/loader.hpp>
 
-#include <Eigen/Core>
+#include <Eigen/Dense>
 
 #include <cstdint>
 #include <vector>
