@@ -9,11 +9,11 @@ program fortran_coupled
   integer, parameter :: dp = c_double, most = 8
   real(dp), parameter :: h = 1e-3_dp, g = 10, radius = 0.5_dp
   real(dp) :: r(3, most), v(3, most), w(3, most)
-  integer :: k
+  integer :: k, calls ! of the exchange
 
   ! Masses 1, 2, ..., 8 from the floor up: contact k carries the weight of k to 8, and nothing moves.
   call step(most, 0._dp, 0.3_dp)
-  call expect(all(abs(r(3, :) - [(sum([(k, k=k, most)])*g*h, k=1, most)]) <= 1e-11_dp), 'weights')
+  call expect(all(abs(r(3, :) - [(0.5_dp*(k + most)*(most - k + 1)*g*h, k=1, most)]) <= 1e-11_dp), 'weights')
   call expect(maxval(abs(v)) <= 1e-13_dp .and. maxval(abs(w)) <= 1e-13_dp, 'rest')
   ! A sphere of mass 1 that slides: mu m g h against it, which also turns it by R mu m g h/J.
   call step(1, 2._dp, 0.1_dp)
@@ -25,7 +25,9 @@ contains
   subroutine expect(is_so, what)
     logical, intent(in) :: is_so
     character(*), intent(in) :: what
-    if (.not. is_so) error stop what
+    if (is_so) return
+    print '(a)', what
+    stop 1
   end subroutine
 
   ! Spheres of masses 1, 2, ... on each other, the first on the floor; one step of their weight. slide: velocity
@@ -44,7 +46,6 @@ contains
     type(ilaw_coupled_options) :: options
     type(ilaw_coupled_report) :: report
     type(ilaw_exchange), target :: alone
-    integer(c_int32_t), target :: calls
     integer :: i
 
     interface = created(mu)
@@ -85,7 +86,6 @@ contains
     options%tolerance = 1e-14_dp
     alone%sum_bodies = c_funloc(agree); alone%largest = c_funloc(agree); alone%sum = c_funloc(agree)
     calls = 0
-    alone%context = c_loc(calls)
     options%exchange = c_loc(alone)
     solver = ilaw_coupled_create()
     call expect(ilaw_solve(solver, bodies, [contacts], options, report) == ILAW_OK, ilaw_text(report%reason))
@@ -102,10 +102,8 @@ contains
     type(c_ptr), value :: context
     real(c_double), intent(inout) :: values(*)
     integer(c_int64_t), value :: count
-    integer(c_int32_t), pointer :: calls
-    call c_f_pointer(context, calls)
-    if (count > 0) values(1) = values(1)
-    calls = calls + 1_c_int32_t
+    if (count > 0 .and. .not. c_associated(context)) values(1) = values(1)
+    calls = calls + 1
   end subroutine
 
   type(c_ptr) function created(mu) result(interface)

@@ -148,6 +148,7 @@ contains
     type(ilaw_setup) :: setup
     type(ilaw_instance_info) :: info
     code = ilaw_open('coulomb', library, message)
+    if (code /= ILAW_OK) return
     setup%dimension = 3
     setup%delassus_form = ILAW_DELASSUS_SCALAR
     setup%frame = frame
@@ -211,6 +212,7 @@ contains
     type(c_ptr) :: library
     type(ilaw_setup) :: setup
     code = ilaw_open('template_c', library, message)
+    if (code /= ILAW_OK) return
     setup%dimension = 2
     setup%delassus_form = ILAW_DELASSUS_SCALAR
     setup%frame = ILAW_FRAME_LOCAL
