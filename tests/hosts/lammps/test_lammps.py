@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""fix ilaw/pair and fix ilaw/wall in the system's lmp, on one to four ranks: closed forms, runs that go on, restarts."""
+"""fix ilaw/pair and fix ilaw/wall in the system's lmp, on one to four ranks: closed forms, runs that go on, restarts.
+One grain that does not turn: tests/hosts/protocols."""
 import math
 import os
 import pathlib
@@ -85,19 +86,6 @@ def thermo(output):
     """Numbers of the rows between the header of the thermo output and the time of the loop."""
     rows = re.findall(r"^Step .*\n((?: *[-\d].*\n)+)", output, re.M)
     return [[float(number) for number in line.split()] for line in "".join(rows).splitlines()]
-
-
-def test_a_grain_bounces_to_the_height_it_fell_from(tmp_path):
-    text = (BEGIN + BOX + "create_atoms 1 single 2 2 2\n" + MASS + INTEGRATE
-            + "fix w all ilaw/wall contact restitution 1 plane 0 0 0 0 0 1\n"
-            + "variable z equal z[1]\nvariable e equal 0.5*vz[1]^2+10*z[1]\n"
-            + "thermo_style custom step v_z v_e f_w[4] f_w[7]\nthermo 1\nrun 1600\n")
-    rows = thermo(lammps(tmp_path, text))
-    assert max(row[1] for row in rows[800:]) == pytest.approx(2.0, abs=1e-4)
-    # In the two steps about a bounce velocities are means of before and after.
-    assert sum(abs(row[2] - 20.0) > 1e-3 for row in rows) <= 3
-    assert max(row[3] for row in rows) == 0.0, "penetrates"
-    assert abs(rows[-1][4]) < 1e-12, "an elastic bounce dissipates nothing"
 
 
 def test_a_pile_settles_and_its_outputs_say_so(tmp_path):
@@ -412,6 +400,9 @@ def test_warns_of_grains_that_no_fix_has_together(tmp_path, ranks):
     assert said.count("pass through each other") == 1
     said = lammps(tmp_path, text + "fix p low ilaw/pair contact\nrun 1\n", ranks)
     assert warning.format("no group of one", "group low") in said, said
+    first = "fix r first ilaw/pair contact\n"  # grains of two fixes
+    said = lammps(tmp_path, text.replace("fix nve", "group first id 1\nfix nve") + first + apart.format("high"), ranks)
+    assert warning.format("group high", "group low and first") in said, said
     pushed = text.replace("style zero", "style lj/cut").replace("coeff * *", "coeff * * 0.0 1.0")
     for text in (text + apart.format("all"), pushed + apart.format("high")):
         assert "pass through each other" not in lammps(tmp_path, text, ranks)
