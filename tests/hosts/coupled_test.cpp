@@ -660,8 +660,8 @@ struct Walls : CoupledProblem {
 };
 
 // Newton's restitution: u_n >= -e u_n^- and r_n >= 0, one of them an equality (Moreau 1988), where u is
-// relative to the wall of each contact. A contact that was opening turns round at most (kit/contact.hpp). The
-// work of an impulse is r.(u^- + u)/2 with these velocities.
+// relative to the wall of each contact. A contact that was opening turns round at most (kit/friction.hpp).
+// The work of an impulse is r.(u^- + u)/2 with these velocities.
 TEST(CoupledWalls, ReboundFromTheirOwnVelocities) {
   constexpr double e = 0.6;
   for (const Kind kind : kinds) {
