@@ -226,64 +226,128 @@ TEST(DualMortar, SupportsABodyUpToTheBorder) {
     }
 }
 
-// ---- sliding --------------------------------------------------------------------------------------------
+// ---- corners and edges of the main face -----------------------------------------------------------------
 
-// ---- corners --------------------------------------------------------------------------------------------
-
-// A cube falls with a corner on a plate that is held, whose nodes are the secondary ones: no constraint
-// belongs to the corner, unless a second interface has its node.
-TEST(DualMortar, BearsACornerThatHasAnInterface) {
+// A cube of 4 x 4 x 4 elements, turned, whose lowest node has a place.
+WrittenMesh turned_cube(bool on_corner, const Eigen::Vector3d& lowest) {
   const Eigen::Matrix3d turn(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY()) *
-                             Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()));
-  WrittenMesh cube = box_mesh({4, 4, 4}, {1, 1, 1}, false, [&](const Eigen::Vector3d& x) {
-    return (turn * (x - Eigen::Vector3d(0.5, 0.5, 0.5))).eval();
-  });
-  WrittenMesh plate = box_mesh({12, 12, 1}, {3, 3, 0.3}, false);
-  double lowest = 1.0;
-  for (const Eigen::Vector3d& node : cube.nodes) lowest = std::min(lowest, node[2]);
-  std::size_t corner = 0;
+                             Eigen::AngleAxisd(on_corner ? 0.3 : 0.0, Eigen::Vector3d::UnitX()));
+  WrittenMesh cube =
+      box_mesh({4, 4, 4}, {1, 1, 1}, false, [&](const Eigen::Vector3d& x) { return (turn * x).eval(); });
+  Eigen::Vector3d least = cube.nodes.front();
+  for (const Eigen::Vector3d& node : cube.nodes)
+    if (node[2] < least[2]) least = node;
   for (std::size_t k = 0; k < cube.nodes.size(); ++k) {
-    if (cube.nodes[k][2] == lowest) corner = k;
-    cube.nodes[k] += Eigen::Vector3d(1.53, 1.54, 0.32 - lowest);
+    cube.nodes[k] += lowest - least;
     cube.of_nodes["bottom"].push_back(k < 25 ? 1 : 0);
   }
-  for (const Eigen::Vector3d& node : plate.nodes) plate.of_nodes["top"].push_back(node[2] > 0.2 ? 1 : 0);
-  const MeshFile plate_file(plate), cube_file(cube);
+  return cube;
+}
+
+// Plate "a" from (0, 0, 0) to (2, 2, 0.3), which is held, and cube "b" that moves down with speed 1.
+json on_a_plate(const MeshFile& plate, const MeshFile& cube, bool cube_is_main, const json& law) {
   json source = {{"model", {{"type", "solids"}, {"meshes", json::array()}}}};
-  for (const auto& [name, file] : {std::pair{"a", &plate_file}, {"b", &cube_file}})
+  for (const auto& [name, file] : {std::pair{"a", &plate}, {"b", &cube}})
     source["model"]["meshes"].push_back(
         {{"name", name}, {"file", file->path().string()}, {"material", elastic(1e6, 0.3, 1000)}});
-  source["model"]["meshes"][0]["velocity"] = {0, 0, 0};
   source["model"]["meshes"][1]["velocity"] = {0, 0, -1};
   source["loads"] = {motion("a", {0, 1, 2})};
-  source["time"] = {{"cfl", 0.7}, {"end", 0.1}};
-  json face = named("face", in_contact()), node = named("corner", in_contact());
-  face["nodes"] = "a.top";
-  face["against"] = {{"surface", "b.bottom"}, {"discretization", "dual_mortar"}};
-  const int node_of_corner = static_cast<int>(plate.nodes.size() + corner);
-  node["nodes"] = {node_of_corner};
-  node["against"] = {{"surface", "a.top"}};
-  for (const bool has_interface : {false, true}) {
-    GIVEN(has_interface);
-    source["interfaces"] = {face};
-    if (has_interface) source["interfaces"].push_back(node);
-    auto [scene, integrator] = simulation_of(source);
-    integrator.start();
-    double deepest = 0.0;
-    while (integrator.steps() < scene.steps) {
-      integrator.step();
-      deepest = std::max(deepest, 0.3 - scene.model->position()[3 * node_of_corner + 2] -
-                                      integrator.displacement()[3 * node_of_corner + 2]);
-    }
-    constexpr double edge = 0.25;
-    if (has_interface)
-      EXPECT_LT(deepest, 1e-9 * edge);
-    else
-      EXPECT_GT(deepest, 0.02 * edge);
-    EXPECT_EQ(integrator.tally().unconverged, 0);
-    EXPECT_LE(integrator.energy().interface_work, 0.0);
-    EXPECT_LE(integrator.energy().balance_error, 1e-12);
+  source["time"] = {{"cfl", 0.7}, {"end", 0.07}};
+  source["interfaces"] = {named("face", law)};
+  source["interfaces"][0]["nodes"] = cube_is_main ? "a.top" : "b.bottom";
+  source["interfaces"][0]["against"] = {{"surface", cube_is_main ? "b.bottom" : "a.top"},
+                                        {"discretization", "dual_mortar"}};
+  source["output"] = {{"forces", {"face"}}};
+  return source;
+}
+
+WrittenMesh plate_mesh() {
+  WrittenMesh plate = box_mesh({8, 8, 1}, {2, 2, 0.3}, false);
+  for (const Eigen::Vector3d& node : plate.nodes) plate.of_nodes["top"].push_back(node[2] > 0.2 ? 1 : 0);
+  return plate;
+}
+
+// Without edge rows the main face would sink in by 0.09 edges at a corner.
+TEST(EdgeRows, BearCornersAndEdgesInBothRoles) {
+  constexpr double edge = 0.25;
+  const MeshFile plate(plate_mesh());
+  for (const bool on_corner : {false, true})
+    for (const bool cube_is_main : {false, true})
+      for (const auto& [restitution, cfl] : {std::pair(0.0, 0.7), {0.5, 0.43}, {1.0, 0.31}}) {
+        if (!cube_is_main && restitution > 0.0) continue;
+        GIVEN(on_corner, cube_is_main, restitution);
+        const MeshFile cube(turned_cube(on_corner, {0.53, 0.54, 0.32}));
+        json law = in_contact();
+        law["parameters"] = {{"restitution", restitution}};
+        json source = on_a_plate(plate, cube, cube_is_main, law);
+        source["time"]["cfl"] = cfl;
+        auto [scene, integrator] = simulation_of(source);
+        integrator.start();
+        const std::vector<int>& nodes = scene.model->sets().at("b").nodes;
+        double deepest = 0.0, most = 0.0;
+        const auto energy = [&, &integrator = integrator] {
+          return integrator.energy().kinetic + integrator.energy().internal;
+        };
+        const double start = energy();
+        while (integrator.steps() < scene.steps) {
+          integrator.step();
+          most = std::max(most, energy() / start);
+          for (const int node : nodes)
+            deepest = std::max(deepest, 0.3 - scene.model->position(node, integrator.displacement())[2]);
+        }
+        EXPECT_LT(deepest, (cube_is_main || !on_corner ? 0.0201 : 0.05) * edge);
+        EXPECT_LE(most, 1.0 + 1e-12);
+        EXPECT_EQ(integrator.tally().unconverged, 0);
+        EXPECT_LE(integrator.energy().balance_error, 1e-12);
+      }
+}
+
+// The force of an interface is what stops the cube, edge rows counted.
+TEST(EdgeRows, CountInTheForceOfTheirInterface) {
+  const MeshFile plate(plate_mesh()), cube(turned_cube(true, {0.53, 0.54, 0.32}));
+  auto [scene, integrator] = simulation_of(on_a_plate(plate, cube, true, in_contact()));
+  ASSERT_EQ(scene.interfaces.size(), 2u);
+  EXPECT_EQ(scene.interfaces[1]->name(), "face_edges");
+  EXPECT_EQ(scene.interfaces[1]->nodes().size(), 16u);  // of the border of 4 x 4 facets
+  ASSERT_EQ(scene.output.forces.size(), 1u);
+  EXPECT_EQ(scene.output.forces[0].other_side, 1);
+  double before = 0.0, after = 0.0;
+  std::array<double, 2> impulses{};
+  integrator.start();
+  while (integrator.steps() < scene.steps) {
+    integrator.step();
+    for (std::size_t i = 0; i < 2; ++i)
+      for (const std::int32_t contact : scene.interfaces[i]->active())
+        impulses[i] += scene.interfaces[i]->impulse(contact)[2];
   }
+  for (const int node : scene.model->sets().at("b").nodes) {
+    const Eigen::Index up = 3 * Eigen::Index{node} + 2;
+    before -= scene.model->mass()[up];
+    after += scene.model->mass()[up] * integrator.velocity()[up];
+  }
+  EXPECT_GT(impulses[1], 0.01 * -before);
+  EXPECT_NEAR(impulses[1] - impulses[0], after - before, 1e-12 * -before);
+}
+
+// Bonds need no edge rows: they pull. Values per node belong to the secondary nodes.
+TEST(EdgeRows, AreMadeForLawsThatCannotPull) {
+  const auto count = [](const json& law) {
+    return scene_of(blocks_on_each_other(patch_meshes[0], false, law, 0.0)).interfaces.size();
+  };
+  EXPECT_EQ(count(in_contact()), 2u);
+  EXPECT_EQ(count(with_friction(0.3)), 2u);
+  EXPECT_EQ(count({{"law", "tie"}}), 1u);
+  json per_node = with_friction(0.3);
+  per_node["parameters"]["friction"] = {{"per_node", std::vector<double>(36, 0.3)}};
+  EXPECT_EQ(count(per_node), 1u);
+}
+
+// The facets of the plate's upper side have the cube behind them, which is below the plate.
+TEST(EdgeRows, LeaveANodeFarBehindTheFaceAlone) {
+  const MeshFile plate(plate_mesh()), cube(turned_cube(false, {0.53, 0.54, -1.5}));
+  const auto [scene, integrator] = run_to_end(on_a_plate(plate, cube, true, in_contact()));
+  EXPECT_EQ(integrator.energy().interface_work, 0.0);
+  EXPECT_EQ(integrator.tally().penetration_max, 0.0);
 }
 
 // ---- what is refused ------------------------------------------------------------------------------------

@@ -18,6 +18,7 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -29,8 +30,10 @@ namespace {
 
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
+// Edge rows write into the arrays of their interface, at other nodes.
 vtkDoubleArray* add_to(vtkDataSetAttributes& arrays, const std::string& name, int components, vtkIdType count,
                        double value) {
+  if (auto* known = vtkDoubleArray::SafeDownCast(arrays.GetArray(name.c_str()))) return known;
   vtkNew<vtkDoubleArray> array;
   array->SetName(name.c_str());
   array->SetNumberOfComponents(components);
@@ -137,14 +140,21 @@ void add_traction(vtkUnstructuredGrid& grid, const Interface& interface, const s
   }
 }
 
+vtkIntArray* add_status(vtkUnstructuredGrid& grid, const std::string& name, int node_count) {
+  vtkPointData& arrays = *grid.GetPointData();
+  if (auto* known = vtkIntArray::SafeDownCast(arrays.GetArray(name.c_str()))) return known;
+  vtkNew<vtkIntArray> status;
+  status->SetName(name.c_str());
+  status->SetNumberOfTuples(node_count);
+  status->FillValue(-1);
+  arrays.AddArray(status);
+  return status;
+}
+
 void add_interface(vtkUnstructuredGrid& grid, const Interface& interface, const std::string& prefix,
                    int node_count, const Integrator& integrator) {
   vtkDoubleArray* gap = add_array(grid, prefix + "gap", node_count, 1, no_value);
-  vtkNew<vtkIntArray> status;
-  status->SetName((prefix + "status").c_str());
-  status->SetNumberOfTuples(node_count);
-  status->FillValue(-1);
-  grid.GetPointData()->AddArray(status);
+  vtkIntArray* status = add_status(grid, prefix + "status", node_count);
   const std::vector<StateArray> states = add_states(grid, interface.info(), prefix, node_count);
   interface.setup().counterpart->follow(integrator.displacement());
   for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
@@ -182,8 +192,11 @@ void Fields::write(const Integrator& integrator) {
   vtkNew<vtkUnstructuredGrid> grid;
   add_body(*grid, integrator);
   add_vectors(*grid, "r", integrator.interface_impulse(), model.dimension());
+  const auto is_own = [](const auto& interface) { return interface->setup().edges_of.empty(); };
+  const bool is_alone = std::count_if(scene_.interfaces.begin(), scene_.interfaces.end(), is_own) == 1;
   for (const auto& interface : scene_.interfaces) {
-    const std::string prefix = scene_.interfaces.size() == 1 ? "" : interface->name() + ".";
+    const std::string& name = is_own(interface) ? interface->name() : interface->setup().edges_of;
+    const std::string prefix = is_alone ? "" : name + ".";
     add_interface(*grid, *interface, prefix, model.node_count(), integrator);
     add_traction(*grid, *interface, prefix, model.node_count(), scene_.dt);
   }
