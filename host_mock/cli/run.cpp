@@ -62,7 +62,7 @@ class Run {
     if (options.tolerance) integrator_.set_tolerance(*options.tolerance);
     if (!expected().empty()) check_expectations(expected(), summary(), history_.columns());
     // The folder of a run to resume is there already.
-    if (!options.resume || std::filesystem::is_directory(options.folder)) held_.emplace(options.folder);
+    if (!options.resume || std::filesystem::is_directory(options.folder)) held_.emplace(options.folder, "summary.json");
     options.resume ? resume() : begin();
   }
 

@@ -203,7 +203,7 @@ int sweep(const RunOptions& options, const std::vector<std::string>& texts) {
                      "; nothing was run");
   }
   catch_interrupts();
-  const HeldFolder held(options.folder);
+  const HeldFolder held(options.folder, "sweep.csv");
   remove_pictures(options.folder);  // of an earlier sweep
   {
     check::Progress progress("runs", "steps", static_cast<double>(steps), options.progress);

@@ -221,16 +221,23 @@ def test_measured_errors_and_times_are_drawn(tmp_path):
     ball = SOURCE / "plugins/contact/bouncing_ball.json"
     bench = ["bench", "contact", "--nodes", "20,30", "--repetitions", "1"]
     for command in (["converge", ball, "--levels", "3"], bench):
-        folder = tmp_path / command[0]
+        folder = tmp_path / "all" / command[0]
         done = subprocess.run([PROGRAM, *command, "--out", folder], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
         assert not list(folder.glob("*.png")), "measuring needs no matplotlib"
         assert plot(folder).returncode == 0
         assert (folder / f"{command[0]}.png").is_file() and (folder / f"{command[0]}.svg").is_file()
-    bars = MEASURED["bench"](tmp_path / "bench")
+    for asked in ([tmp_path / "all"], sorted((tmp_path / "all").iterdir())):
+        for picture in tmp_path.glob("all/*/*.png"):
+            picture.unlink()
+        assert plot(*asked).returncode == 0
+        assert len(list(tmp_path.glob("all/*/*.png"))) == 2
+    several = plot(tmp_path / "all", "--out", tmp_path)
+    assert several.returncode == 2 and "--out: found with 2 folders" in several.stderr
+    bars = MEASURED["bench"](tmp_path / "all/bench")
     assert [axes.get_title() for axes in bars.axes] == ["20 nodes", "30 nodes"]
     assert [len(axes.patches) for axes in bars.axes] == [1, 1]
-    errors = MEASURED["converge"](tmp_path / "converge").axes[0]
+    errors = MEASURED["converge"](tmp_path / "all/converge").axes[0]
     assert errors.get_xscale() == errors.get_yscale() == "log"
     (tmp_path / "study.csv").write_text(
         "law,dt,steps,seconds,penetration,u_L2,u_max,v_L1,instant,impulse,energy\n"

@@ -125,7 +125,10 @@ def thrown(case: Case, height: float, speed: float, e: float, mu: float, g: floa
         moves = sum(path.at(t)[1] ** 2 for path in paths)
         return mass * (0.5 * moves + g * (height + paths[-1].at(t)[0])) - energy
 
-    return of_paths(paths, [instants_of(fall)], impulse=impulse, work=work, energy=energy)
+    # Gravity presses it on the plane to the end once it rests there; until then each bounce is an impulse.
+    bounces = [start for start, *_ in across[1:] if start <= case.end]
+    last = math.nan if not bounces else case.end if since <= case.end else bounces[-1]
+    return of_paths(paths, [instants_of(fall, last)], impulse=impulse, work=work, energy=energy)
 
 
 def bouncing_ball(case: Case, wanted: str) -> Exact:
@@ -176,8 +179,8 @@ def impact_oscillator(case: Case, wanted: str) -> Exact:
         start, size, phase = at(t)[:3]
         return (factor * size * wave(w * (t - start) - phase))[:, None]
 
-    first = float(table[1, 0]) if len(table) > 1 else math.nan
-    return Exact(lambda t: swing(t, np.cos, 1.0), lambda t: swing(t, np.sin, -w), np.array([instants_of(first)]),
+    stops = [float(start) for start in table[1:, 0] if start <= case.end] or [math.nan]
+    return Exact(lambda t: swing(t, np.cos, 1.0), lambda t: swing(t, np.sin, -w), np.array([instants_of(stops[0], stops[-1])]),
                  lambda t: at(t)[3][:, None], lambda t: at(t)[4], 0.5 * mass * speed**2)  # fmt: skip
 
 
@@ -377,6 +380,21 @@ class Bar:
         self.back = 2.0 * self.length / self.speed  # time in which a wave returns
 
 
+def is_right_end(case: Case, nodes: Any) -> bool:
+    """Whether a selection of nodes is the last one of the bar: a name, a number, near, or a box."""
+    bar, elements = Bar(case.body), case.body["elements"]
+    end, edge = bar.start + bar.length, bar.length / elements
+    if isinstance(nodes, str) and nodes in case.scene.get("sets", {}):
+        return is_right_end(case, case.scene["sets"][nodes])
+    if not isinstance(nodes, dict):
+        return nodes in (f"{case.body.get('name', 'bar0')}.right", elements, [elements])
+    if "near" in nodes:
+        places = np.ravel(nodes["near"])
+        return len(places) == 1 and places[0] > end - 0.5 * edge
+    (low,), (high,) = nodes["box"]
+    return end - edge < low <= end <= high
+
+
 def bar_on_wall(case: Case, wanted: str) -> Exact:
     """Contact for the return time 2L/c of a wave, at rest, then rebound at the speed of impact (Doyen et al. 2011)."""
     require(not case.loads, wanted)
@@ -466,8 +484,7 @@ def held_rod(case: Case, wanted: str) -> Exact:
     It falls at c a/L, rests on the plane while the waves cross, and is thrown back to where it was, each for L/c.
     """
     bar, (load,), (initial,) = Bar(case.body), case.loads, case.scene["initial"]
-    right = [f"{case.body.get('name', 'bar0')}.right", [case.body["elements"]]]
-    require(load["type"] == "motion" and load["nodes"] in right and not {"velocity", "path"} & load.keys(), wanted)
+    require(load["type"] == "motion" and is_right_end(case, load["nodes"]) and not {"velocity", "path"} & load.keys(), wanted)
     ends = [initial["displacement"][0] + initial["gradient"][0][0] * x for x in (bar.start, bar.start + bar.length)]
     require("nodes" not in initial and ends[0] > 0.0 and abs(ends[1]) <= 1e-12 * ends[0], wanted)
     require(bar.velocity == 0.0 and case.obstacle_at() == bar.start, wanted)

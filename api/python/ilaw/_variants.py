@@ -15,7 +15,7 @@ from typing import Any, Iterator, NamedTuple, Optional
 
 import numpy as np
 
-from ._command import BadInput
+from ._command import DONE, BadInput, complain
 from ._errors import Trace
 from ._exact import Exact, Scene, exact_solution
 from ._results import Run
@@ -116,6 +116,8 @@ class Scenes:
 
     def __init__(self, file: Path, threads: int) -> None:
         self.file, self.threads = file, threads
+        self.said: list[str] = []  # warnings of the last run
+        self.warnings: dict[tuple[str, str], list[str]] = {}
         self.room = tempfile.TemporaryDirectory(prefix="ilaw_")
         # Small files of the many short runs need not wait for the disk.
         memory = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
@@ -150,17 +152,27 @@ class Scenes:
         if isinstance(time, dict) and isinstance(time.get("end"), (int, float)) and time["end"] > 0:
             time = {**time, "end": 1e-300}  # one step
         run = self._run_scene({**scene, "time": time}, self.quick_room, *kept)
-        names = run.history()[0]
+        names, _ = run.history()
         dt, time = run.summary["dt"], scene["time"]
         masses = [float(interface["least_mass"]) for interface in run.summary["interfaces"]]
         return Probe(dt, steps_of(time["end"], dt), dt / time[key_of(time)], float(run.summary["critical_step"]),
                      min(masses, default=math.inf), sum(name.endswith(".u0") for name in names),
                      [interface["name"] for interface in run.summary["interfaces"]])  # fmt: skip
 
-    def trace(self, scene: Scene, names: list[str]) -> Trace:
+    def trace(self, scene: Scene, names: list[str], law: str = "") -> Trace:
         """names: of the interfaces."""
         output = {"watch": scene["output"]["watch"], "every": 1, "balance": "interface_work", "forces": names}
-        return trace_of(self._run_scene({**scene, "output": output}, self.room), names)
+        run = self._run_scene({**scene, "output": output}, self.room)
+        for text in self.said:  # alike but for their numbers
+            self.warnings.setdefault((law, re.sub(r"[\d.]+(e[+-]?\d+)?", "#", text)), []).append(text)
+        return trace_of(run, names)
+
+    def tell_warnings(self) -> None:
+        """What the runs of trace() warned of: each warning once, as its first run gave it."""
+        for (law, _), texts in self.warnings.items():
+            of_law = f" with law '{law}'" if law else ""
+            runs = "1 run" if len(texts) == 1 else f"{len(texts)} runs"
+            complain(f"{self.file}: warning of {runs}{of_law}: {texts[0]}", DONE)
 
     def seconds(self, scene: Scene, steps: int) -> float:
         """Of the processor, for the steps alone."""
@@ -187,6 +199,7 @@ class Scenes:
 
     def _run(self, arguments: list[Any], file: Path) -> None:
         done = subprocess.run([program(), "run", *arguments], capture_output=True, text=True, errors="replace")
+        self.said = re.findall(r"^ilaw: .*?: warning: (.*(?:\n  .*)*)", done.stderr, re.MULTILINE)
         if done.returncode in (0, MISSED):
             return
         said = ("\n" + done.stderr.strip()).rpartition("\nilaw: ")[2].removeprefix(f"{file}: ")
@@ -213,7 +226,9 @@ class Scenes:
 
 
 def trace_of(run: Run, interfaces: list[str]) -> Trace:
-    names, rows = run.history()
+    read = re.compile(r"time$|n\d+\.(u|v|r)\d$|n\d+\.(\S+\.)?status$|balance\.interface_work$|(%s)\.F\d$"
+                      % "|".join(map(re.escape, interfaces)))  # fmt: skip
+    names, rows = run.history(lambda name: read.match(name) is not None)
     columns = dict(zip(names, rows.T))
     summary = run.summary
     nodes = [name[:-3] for name in names if re.fullmatch(r"n\d+\.u0", name)]
@@ -229,9 +244,9 @@ def trace_of(run: Run, interfaces: list[str]) -> Trace:
         impulse += np.concatenate([summary["forces"][name]["impulse"] for name in interfaces]) - impulse[-1]
     instants = np.full((len(nodes), 3), math.nan)
     for k, node in enumerate(nodes):
-        contacts = [name.removesuffix("gap") for name in names if re.fullmatch(rf"{node}\.(\S+\.)?gap", name)]
+        contacts = [columns[name] for name in names if re.fullmatch(rf"{node}\.(\S+\.)?status", name)]
         given = np.any([columns[f"{node}.r{c}"] for c in components if contacts] or [False], axis=0)
-        broken = np.any([columns[contact + "status"] == BROKEN for contact in contacts] or [False], axis=0)
+        broken = np.any([status == BROKEN for status in contacts] or [False], axis=0)
         for place, found, which in ((0, given, 0), (1, given, -1), (2, broken, -1)):
             if found.any():
                 instants[k, place] = rows[np.flatnonzero(found)[which], 0]

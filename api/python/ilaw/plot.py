@@ -305,6 +305,15 @@ def label_of(history: History, column: str) -> str:
     return with_unit(name, history.unit(curve))
 
 
+def measured_in(folder: Path) -> list[str]:
+    """What a folder has of converge, study or bench."""
+    return [name for name in MEASURED if (folder / f"{name}.csv").is_file()]
+
+
+def draw_measured(folder: Path, output: Path) -> list[Path]:
+    return [file for name in measured_in(folder) for file in save(MEASURED[name](folder), output / name)]
+
+
 # ---- the command -----------------------------------------------------------------------------------------------------
 
 
@@ -315,19 +324,22 @@ def draw(options: argparse.Namespace) -> list[Path]:
     folders = [f for f in options.folders if len(options.folders) == 1 or not f.is_file()]
     if not folders:
         raise BadRequest("found files alone, expected folders that `ilaw run` wrote")
-    first, columns = folders[0], options.y or options.x != "time"
+    columns = options.y or options.x != "time"
+    if not columns and not any((f / "summary.json").is_file() for f in folders):
+        inner = [f for folder in folders for f in ([folder] if measured_in(folder) else sorted(folder.glob("*/")))]
+        measured = [folder for folder in inner if measured_in(folder)]
+        if measured:  # each for itself, as a study of several scenes leaves them
+            if options.out and len(measured) > 1:
+                raise BadRequest(f"--out: found with {len(measured)} folders, expected none: each keeps its own picture")
+            return [file for folder in measured for file in draw_measured(folder, options.out or folder)]
+    first = folders[0]
     if len(folders) > 1 or columns:
         if options.panels:
             expected = "expected one folder; --y chooses columns there"
             raise BadRequest(f"--panels: found with several folders or --x, {expected}")
         output = options.out or (first.resolve().parent if len(folders) > 1 else first)
         return draw_columns(folders, output, options.x, options.y)
-    output = options.out or first
-    measured = [name for name in MEASURED if (first / f"{name}.csv").is_file()]
-    written = [path for name in measured for path in save(MEASURED[name](first), output / name)]
-    if measured and not (first / "history.csv").is_file():
-        return written
-    return written + draw_run(first, output, options.panels)
+    return draw_run(first, options.out or first, options.panels)
 
 
 def main(arguments: Optional[Sequence[str]] = None) -> int:
