@@ -11,6 +11,7 @@
 #include "base/stop_request.hpp"
 #include "base/words.hpp"
 #include "cli/guard.hpp"
+#include "cli/python.hpp"
 #include "cli/terminal.hpp"
 #include "model/elements.hpp"
 #include "results/checkpoint.hpp"
@@ -70,9 +71,8 @@ class Run {
   void advance() {
     try {
       if (!options_.resume) start();
-      check::Progress own("run", "steps", static_cast<double>(scene_.steps), options_.progress);
-      check::Progress& progress = options_.shared ? *options_.shared : own;
-      own.begin_at(static_cast<double>(integrator_.steps()));
+      check::Progress progress("run", "steps", static_cast<double>(scene_.steps), options_.progress);
+      progress.begin_at(static_cast<double>(integrator_.steps()));
       const double start_of_steps = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
       while (integrator_.steps() < scene_.steps && !stop_requested()) {
         audited([this] { integrator_.step(); });
@@ -192,7 +192,7 @@ class Run {
   void start() {
     if (scene_.prestress) find_equilibrium();
     audited([this] { integrator_.start(); });
-    if (const auto& found = integrator_.prestressed(); found && options_.tells_of_start)
+    if (const auto& found = integrator_.prestressed())
       std::printf("prestress: static equilibrium after %lld steps, residual %.2g\n",
                   static_cast<long long>(found->steps), found->residual);
     history_.add_start(integrator_);
@@ -321,20 +321,7 @@ std::unique_ptr<Run> start_or_explain(Scene& scene, const RunOptions& options) {
   return nullptr;
 }
 
-int run(const RunOptions& options) {
-  place_arrays_one_after_another();
-  set_threads(options.threads);
-  name_crashes();
-  warn_of_search_path();
-  Scene scene = in_scene(options.scene, [&] { return read_scene(options.scene); });
-  for (const nlohmann::json& mesh : scene.meshes) std::printf("%s\n", printable(line_of_mesh(mesh)).c_str());
-  std::fflush(stdout);        // before what goes to stderr
-  name_crashes_of_threads();  // after reading: readers of meshes are processes, which threads must not start
-  return run_scene(scene, options);
-}
-
-}  // namespace
-
+// Into options.folder, which it makes and holds; says on stderr what goes wrong.
 int run_scene(Scene& scene, const RunOptions& options) {
   const double start = clock_seconds(CLOCK_MONOTONIC);
   catch_interrupts();
@@ -351,9 +338,24 @@ int run_scene(Scene& scene, const RunOptions& options) {
   return report_run(scene, run->integrator(), run->record, run->judged, options);
 }
 
+int run(const RunOptions& options) {
+  place_arrays_one_after_another();
+  set_threads(options.threads);
+  name_crashes();
+  warn_of_search_path();
+  Scene scene = in_scene(options.scene, [&] {
+    return read_scene(read_scene_source(options.text.empty() ? options.scene : options.text), options.scene);
+  });
+  for (const nlohmann::json& mesh : scene.meshes) std::printf("%s\n", printable(line_of_mesh(mesh)).c_str());
+  std::fflush(stdout);        // before what goes to stderr
+  name_crashes_of_threads();  // after reading: readers of meshes are processes, which threads must not start
+  return run_scene(scene, options);
+}
+
+}  // namespace
+
 void add_run(CLI::App& app, int& code) {
   const auto options = std::make_shared<RunOptions>();
-  const auto settings = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand("run", "Run a scene and write history.csv and summary.json");
   command->add_option("scene", options->scene, "Scene file (JSON)")->required();
   command->add_option("--out", options->folder, "Folder for the results, made if it does not exist")
@@ -375,14 +377,18 @@ void add_run(CLI::App& app, int& code) {
       ->check(CLI::Range(1e-15, 0.1))
       ->excludes("--resume");
   command
-      ->add_option("--set", *settings,
+      ->add_option("--set", options->settings,
                    "/pointer=value,value,...: a run with each value of a key of the scene, --threads at a "
                    "time, and sweep.csv; may be repeated")
       ->excludes("--resume")
       ->expected(1)
       ->take_all();
+  command->add_option("--text", options->text)->group("");  // for commands in Python
   command->footer("Example: ilaw run plugins/contact/bouncing_ball.json --out results");
-  command->callback([=, &code] { code = settings->empty() ? run(*options) : sweep(*options, *settings); });
+  command->callback([=, &code] {
+    if (!options->settings.empty()) become_python(*command, {"ilaw.sweep", "numpy", "python3-numpy"});
+    code = run(*options);
+  });
 }
 
 }  // namespace ilaw::host

@@ -45,7 +45,7 @@ void add_converge(CLI::App& app, int& /*code*/) {
       ->required();
   add_sweep(*command, *options, "Number of runs, the scene's own included", CLI::Range(2, 12));
   command->footer("Example: ilaw converge host_mock/scenes/bar_on_wall.json --out errors");
-  run_in_python(*command, "ilaw.converge", "numpy", "python3-numpy", options);
+  run_in_python(*command, {"ilaw.converge", "numpy", "python3-numpy"}, options);
 }
 
 void add_study(CLI::App& app, int& /*code*/) {
@@ -72,7 +72,7 @@ void add_study(CLI::App& app, int& /*code*/) {
   command->footer(
       "Example: ilaw study host_mock/scenes/bar_on_wall.json --out study\n"
       "         ilaw study scene.json --out study --law contact --law 'penalty:{\"stiffness\": 1e6}'");
-  run_in_python(*command, "ilaw.study", "numpy", "python3-numpy", options);
+  run_in_python(*command, {"ilaw.study", "numpy", "python3-numpy"}, options);
 }
 
 }  // namespace ilaw::host

@@ -65,6 +65,14 @@ def test_quantities_units_and_names_of_the_scene_are_on_the_axes(tmp_path):
     assert (results / "history.png").read_bytes()[1:4] == b"PNG"
 
 
+def test_pressure_of_a_point_without_an_area_is_no_mistake(tmp_path):
+    scene = sliding()
+    scene["model"]["points"][0]["area"], scene["output"] = 0, {"watch": [0], "contact": True}
+    results = run(scene, tmp_path)
+    assert not np.isfinite(Run(results).history(lambda name: name == "n0.pressure")[1][-1, 0])
+    assert plot(results).returncode == 0
+
+
 def test_rounding_is_left_out_and_said(tmp_path):
     results = run(sliding(), tmp_path)
     read = Run(results)

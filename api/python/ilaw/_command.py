@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import difflib
 import fcntl
 import json
 import math
@@ -32,6 +33,11 @@ def complain(text: str, code: int) -> int:
     lines = [printable(line.strip()) for line in text.split("\n")]
     print("ilaw: " + "\n  ".join(lines), file=sys.stderr)
     return code
+
+
+def meant(word: str, known: Sequence[str]) -> str:
+    close = difflib.get_close_matches(word, known, 1)
+    return f" (did you mean '{close[0]}'?)" if close else ""
 
 
 def interrupt(number: int, frame: Any) -> None:

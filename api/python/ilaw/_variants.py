@@ -131,6 +131,12 @@ class Scenes:
         self.quick_room.cleanup()
 
     def read(self) -> Scene:
+        scene = self.parse()
+        self.probe(scene, "expect")
+        return scene
+
+    def parse(self) -> Scene:
+        """Refuses what is no JSON object as `ilaw run` does."""
         def once(pairs: list[tuple[str, Any]]) -> Scene:
             if len(dict(pairs)) < len(pairs):
                 raise ValueError("a key twice")
@@ -139,11 +145,10 @@ class Scenes:
         try:
             scene = json.loads(self.file.read_text(encoding="utf-8-sig"), object_pairs_hook=once)
             if isinstance(scene, dict):
-                self.probe(scene, "expect")
                 return scene
         except (OSError, ValueError, RecursionError):
             pass
-        self._run([self.file, "--out", Path(self.quick_room.name) / "refused"], self.file)
+        self._run("--out", Path(self.quick_room.name) / "refused")
         raise BadInput("found no scene that Python reads, expected a JSON object")
 
     def probe(self, scene: Scene, *kept: str) -> Probe:
@@ -193,36 +198,21 @@ class Scenes:
         """What the scene expects names columns that runs with other output lack; `kept` has "expect" if it is to be read."""
         folder, file = Path(room.name) / "out", Path(room.name) / "scene.json"
         (folder / "summary.json").unlink(missing_ok=True)
-        file.write_text(json.dumps(self._beside({key: scene[key] for key in scene if key != "expect" or key in kept})))
-        self._run([file, "--out", folder, "--threads", str(self.threads)], file)
+        file.write_text(json.dumps({key: scene[key] for key in scene if key != "expect" or key in kept}))
+        self._run("--text", file, "--out", folder, "--threads", str(self.threads))
         return Run(folder)
 
-    def _run(self, arguments: list[Any], file: Path) -> None:
-        done = subprocess.run([program(), "run", *arguments], capture_output=True, text=True, errors="replace")
+    def _run(self, *options: Any) -> None:
+        done = subprocess.run([program(), "run", self.file, *options], capture_output=True, text=True, errors="replace")
         self.said = re.findall(r"^ilaw: .*?: warning: (.*(?:\n  .*)*)", done.stderr, re.MULTILINE)
         if done.returncode in (0, MISSED):
             return
-        said = ("\n" + done.stderr.strip()).rpartition("\nilaw: ")[2].removeprefix(f"{file}: ")
+        said = ("\n" + done.stderr.strip()).rpartition("\nilaw: ")[2].removeprefix(f"{self.file}: ")
         if done.returncode == 2:
             raise BadInput(said)
         if done.returncode < 0:
             raise Failed(f"its process crashed: {signal.strsignal(-done.returncode)}")
         raise Failed(re.sub(r"^failed after step \d+, time \S+: |; that state is in .*", "", said))
-
-    def _beside(self, scene: Scene) -> Scene:
-        """The scene with absolute names of the files that stand beside it."""
-        def absolute(owner: Any, key: str) -> None:
-            if isinstance(owner, dict) and isinstance(owner.get(key), str) and (key != "library" or "/" in owner[key]):
-                owner[key] = str(self.file.absolute().parent / owner[key])
-
-        scene = copy.deepcopy(scene)
-        model = scene.get("model")
-        absolute(model, "points")
-        for part, key in ((model, "meshes"), (scene, "interfaces")):
-            entries = part.get(key) if isinstance(part, dict) else None
-            for entry in entries if isinstance(entries, list) else []:
-                absolute(entry, "file" if key == "meshes" else "library")
-        return scene
 
 
 def trace_of(run: Run, interfaces: list[str]) -> Trace:

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import argparse
-import difflib
-import json
 import sys
 import warnings
 from pathlib import Path
-from typing import Any, Optional, Sequence
+from typing import Optional, Sequence
 
 import numpy as np
 
+from ._command import meant
 from ._curves import Curve, curves_of, thinned, visible
 from ._figure import COLORS, DASHES, SQUARE, STRIP, STYLE, Axes, Panel, plt, save, sheet, with_unit
 from ._measured import MEASURED
 from ._relations import relations_of
 from ._results import STATUS_NAMES, Run, UnreadableRun
+from .table import differences, flat
 
 MOST_ROWS, MOST_NODES, MOST_PANELS = 4000, 6, 12
 FIRST = ("gap", "displacement", "velocity", "impulse", "summed impulse")
@@ -69,11 +69,6 @@ class History:
             some = ", ".join(c.column for c in self.rounding[:5]) + (", ..." if len(self.rounding) > 5 else "")
             found.append(f"Not drawn, since below 1e-12 of its scale: {some}")
         return found
-
-
-def meant(word: str, known: Sequence[str]) -> str:
-    close = difflib.get_close_matches(word, known, 1)
-    return f" (did you mean '{close[0]}'?)" if close else ""
 
 
 # ---- the panels of a run over time -----------------------------------------------------------------------------------
@@ -244,21 +239,12 @@ def draw_run(folder: Path, output: Path, wanted: Sequence[str]) -> list[Path]:
 # ---- several runs, or columns over each other ------------------------------------------------------------------------
 
 
-def flat(value: Any, pointer: str = "") -> dict[str, Any]:
-    """Numbers and words by JSON pointer."""
-    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else None
-    if items is None:
-        return {pointer: value}
-    return {key: leaf for name, part in items for key, leaf in flat(part, f"{pointer}/{name}").items()}
-
-
 def legends_of(histories: list[History]) -> list[str]:
     """What differs between the scenes, if it is little; otherwise the folder."""
-    scenes = [flat({k: v for k, v in h.run.scene.items() if k not in ("title", "doc")}) for h in histories]
-    keys = list(dict.fromkeys(key for scene in scenes for key in scene))
-    differ = [key for key in keys if len({json.dumps(scene.get(key)) for scene in scenes}) > 1]
+    differ = differences([h.run.scene for h in histories])
     if not 0 < len(differ) <= 3:
         return [h.run.folder.resolve().name for h in histories]
+    scenes = [flat(h.run.scene) for h in histories]
     return [" ".join(f"{key.rpartition('/')[2]}={scene.get(key, '-')}" for key in differ) for scene in scenes]
 
 

@@ -130,9 +130,8 @@ void History::add_node(std::size_t watched, const Integrator& integrator, const 
     for_each_state(interface.info(),
                    [&](const std::string&, int entry) { *table_ << state[static_cast<std::size_t>(entry)]; });
     if (!scene_.output.contact) continue;
-    table_->add_if_finite(contact.last.pressure);  // a point may have no area
-    table_->add_if_finite(contact.last.shear);
-    *table_ << contact.slip << contact.wear;
+    // A point may have no area.
+    *table_ << contact.last.pressure << contact.last.shear << contact.slip << contact.wear;
   }
 }
 
