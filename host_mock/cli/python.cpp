@@ -71,8 +71,8 @@ void become_python(const CLI::App& command, const PythonModule& module) {
     pointers.push_back(nullptr);
     execvp(pointers[0], pointers.data());
   }
-  throw std::runtime_error("found no Python 3 with " + module.packages + "; install it with `apt-get install " +
-                           module.debian_packages + "`");
+  throw std::runtime_error("found no Python 3 with " + module.packages +
+                           "; install it with `apt-get install " + module.debian_packages + "`");
 }
 
 void run_in_python(CLI::App& command, const PythonModule& module, const std::shared_ptr<void>& kept) {

@@ -61,9 +61,10 @@ class Run {
       interface->ask_energies(scene.output.energy != "interface_work");
     if (options.audits) audit_.emplace(scene, integrator_);
     if (options.tolerance) integrator_.set_tolerance(*options.tolerance);
-    if (!expected().empty()) check_expectations(expected(), summary(), history_.columns());
+    if (!expected().empty()) check_expectations(expected(), summary(), history_.names());
     // The folder of a run to resume is there already.
-    if (!options.resume || std::filesystem::is_directory(options.folder)) held_.emplace(options.folder, "summary.json");
+    if (!options.resume || std::filesystem::is_directory(options.folder))
+      held_.emplace(options.folder, "summary.json");
     options.resume ? resume() : begin();
   }
 
@@ -77,7 +78,7 @@ class Run {
       while (integrator_.steps() < scene_.steps && !stop_requested()) {
         audited([this] { integrator_.step(); });
         tell_of_stable_step();
-        history_.add_step(integrator_);
+        history_.add_step();
         if (events_) events_->add_step(integrator_);
         write_outputs();
         progress.add(1.0);
@@ -195,7 +196,7 @@ class Run {
     if (const auto& found = integrator_.prestressed())
       std::printf("prestress: static equilibrium after %lld steps, residual %.2g\n",
                   static_cast<long long>(found->steps), found->residual);
-    history_.add_start(integrator_);
+    history_.add_start();
     if (events_) events_->add_step(integrator_);
     if (scene_.output.fields > 0) fields_.write(integrator_);
   }
@@ -269,7 +270,7 @@ class Run {
     if (!row && !field && !checkpoint) return;
     const double start = clock_seconds(CLOCK_MONOTONIC);
     if (row || field) check_motion();
-    if (row) history_.add_row(integrator_);
+    if (row) history_.add_row();
     if (field) fields_.write(integrator_);
     if (checkpoint) write_checkpoint_now();
     record.seconds_output += seconds_since(start);

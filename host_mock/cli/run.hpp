@@ -16,7 +16,8 @@ namespace ilaw::host {
 
 struct RunOptions {
   std::filesystem::path scene, folder;
-  std::filesystem::path text;  // file with the text of the scene, where a command has changed it; empty: scene
+  std::filesystem::path
+      text;  // file with the text of the scene, where a command has changed it; empty: scene
   std::int64_t checkpoint_every = 0;  // steps; 0: never
   bool resume = false;
   int threads = 1;

@@ -126,10 +126,10 @@ TEST(Watched, NodesAreContactsInTheirOrder) {
   const auto folder = fresh_folder();
   History history(run, integrator);
   history.open(folder);
-  history.add_row(integrator);
+  history.add_row();
   EXPECT_EQ(run.interfaces[0]->contact_count(), 0U);
   integrator.step();
-  history.add_row(integrator);
+  history.add_row();
   for (int k = 0; k < 3; ++k) EXPECT_EQ(run.interfaces[0]->contact_at(k), k);
 }
 

@@ -169,6 +169,7 @@ def test_several_runs_have_a_legend_of_what_differs(tmp_path):
         (tmp_path / str(friction)).mkdir()
         run(scene, tmp_path / str(friction))
     folders = sorted(tmp_path.glob("*/results"))
+    assert f"{folders[0].parent}: found folders of runs, expected one" in plot(folders[0].parent).stderr
     assert plot(*folders).returncode == 0
     text = (folders[0].parent / "comparison.svg").read_text()
     assert "friction=0.1" in text and "friction=0.4" in text

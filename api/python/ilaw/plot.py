@@ -319,6 +319,8 @@ def draw(options: argparse.Namespace) -> list[Path]:
                 raise BadRequest(f"--out: found with {len(measured)} folders, expected none: each keeps its own picture")
             return [file for folder in measured for file in draw_measured(folder, options.out or folder)]
     first = folders[0]
+    if len(folders) == 1 and not (first / "summary.json").is_file() and any(first.glob("*/summary.json")):
+        raise BadRequest(f"{first}: found folders of runs, expected one of them, or several: {first}/*")
     if len(folders) > 1 or columns:
         if options.panels:
             expected = "expected one folder; --y chooses columns there"

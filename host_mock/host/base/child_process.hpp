@@ -1,5 +1,5 @@
-// child_process.hpp - work in a process of its own: code that may crash. To be called while the program has one
-// thread: a copy of it has no others.
+// child_process.hpp - work in a process of its own: code that may crash. To be called while the program has
+// one thread: a copy of it has no others.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -117,17 +117,18 @@ void check_keys(const json& value, const json& part, const std::string& pointer,
                 Mistakes& mistakes) {
   for (const json& key : part.value("required", json::array()))
     if (!value.contains(key.get<std::string>()))
-      mistakes.push_back({depth, SceneError(pointer, "key '" + key.get<std::string>() + "' is missing, found " +
-                                                         shortened(value))
+      mistakes.push_back({depth, SceneError(pointer, "key '" + key.get<std::string>() +
+                                                         "' is missing, found " + shortened(value))
                                      .what()});
   if (part.value("additionalProperties", json()) != false) return;
   std::vector<std::string> keys;
   for (const auto& [key, ignored] : part["properties"].items()) keys.push_back(key);
   for (const auto& [key, ignored] : value.items())
     if (!part["properties"].contains(key))
-      mistakes.push_back({depth, SceneError(pointer + "/" + key, "unknown key, expected one of: " + joined(keys) +
-                                                                     suggestion(key, keys) + place_of(key))
-                                     .what()});
+      mistakes.push_back(
+          {depth, SceneError(pointer + "/" + key, "unknown key, expected one of: " + joined(keys) +
+                                                      suggestion(key, keys) + place_of(key))
+                      .what()});
 }
 
 // The keys of all kinds that a value may be of.
@@ -160,7 +161,8 @@ bool is_allowed(const json& value, const json& part) {
   if (!value.is_number()) return true;
   const auto number = value.get<double>();
   return number >= part.value("minimum", -HUGE_VAL) && number <= part.value("maximum", HUGE_VAL) &&
-         number > part.value("exclusiveMinimum", -HUGE_VAL) && number < part.value("exclusiveMaximum", HUGE_VAL);
+         number > part.value("exclusiveMinimum", -HUGE_VAL) &&
+         number < part.value("exclusiveMaximum", HUGE_VAL);
 }
 
 // Of a value that is none of several kinds, the mistakes within it count, whichever kind was meant.
@@ -176,7 +178,8 @@ void check(const json& value, const json& given, const std::string& pointer, std
       return;
     }
     std::ranges::copy_if(own, std::back_inserter(mistakes), [&](const Mistake& a) {
-      return a.depth > depth && std::ranges::none_of(mistakes, [&](const Mistake& b) { return a.text == b.text; });
+      return a.depth > depth &&
+             std::ranges::none_of(mistakes, [&](const Mistake& b) { return a.text == b.text; });
     });
   }
   for (std::size_t k = 0; value.is_array() && part.contains("items") && k < value.size(); ++k)
