@@ -125,7 +125,7 @@ def test_exact_postit_counts_presses_within_its_memory():
 def test_last_impulses_of_balls_and_oscillators():
     """The last bounce before the end, or the end itself for a ball that rests; arcs of the oscillator likewise."""
     fall = math.sqrt(2 / 9.81)
-    for restitution, end, last in ((0.8, 5.0, 5.0), (0.8, 1.5, fall * (1 + 2 * 0.8)), (1.0, 5.0, 11 * fall - 2 * fall)):
+    for restitution, end, last in ((0.8, 5.0, 5.0), (0.8, 1.5, fall * (1 + 2 * 0.8)), (1.0, 5.0, 11 * fall)):
         instants = exact_solution(ball(restitution), 1, round(end / 1e-2), 1e-2).instants[0]
         assert instants[:2] == pytest.approx([fall, last], abs=1e-12), (restitution, end)
     oscillator = shipped("impact_oscillator")
@@ -270,9 +270,12 @@ def test_bouncing_ball_is_of_first_order(restitution, tmp_path):
     rows, found = measured(converge, scene, tmp_path, "--levels", "12", "--factor", "1.7")
     assert found["refined"] == "time step"
     # Without rebound there is one jump, which half steps see at the right place or one off: no order.
-    for norm in ["u_L2"] + ["v_L1"] * (restitution > 0):
+    for norm in ["u_L2"] + ["v_L1"] * (restitution > 0) + ["instant"] * (restitution == 0.8):
         assert 0.8 <= found["orders"][norm] <= 1.3, norm
-    assert all(row["instant"] <= 1.5 * row["dt"] for row in rows)
+    # A bounce is up to a step late and up to g h too fast, for a flight that is 2 e h longer. With 0.8 the last one
+    # before the end is the fourth; the others rest.
+    late = 4 * (1 + 2 * restitution) if restitution == 0.8 else 1.5
+    assert all(row["instant"] <= late * row["dt"] for row in rows)
 
 
 def test_without_exact_solution_compares_with_the_finest_run(tmp_path):
@@ -505,7 +508,7 @@ def test_usual_penalties_are_stiffer_than_the_spring_of_a_point(tmp_path):
 
 def test_a_law_without_a_name_is_refused(tmp_path):
     for law in ("", ":{}"):
-        done = program("study", SCENES["bouncing_ball_e08"], f"--law={law}", "--out", tmp_path / "out")
+        done = program("study", SCENES["bouncing_ball_e08"], "--law", law, "--out", tmp_path / "out")
         assert done.returncode == 2 and f"--law: found '{law}', expected NAME" in done.stderr
 
 

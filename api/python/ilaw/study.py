@@ -52,7 +52,7 @@ class LawRuns:
 def read_law_option(text: str) -> Scene:
     """NAME, NAME:{parameters}, or an entry of study/laws itself."""
     name, colon, parameters = ("", ":", text) if text.startswith("{") else text.partition(":")
-    if not name and parameters != text:
+    if not name and not text.startswith("{"):
         raise BadInput(f"--law: found '{text}', expected NAME, NAME:{{parameters}}, or an entry of study/laws in JSON")
     try:
         given = json.loads(parameters) if colon else {}

@@ -110,8 +110,10 @@ def make_variants(scenes: Scenes, settings: Sequence[Setting]) -> list[Variant]:
             for setting, value in zip(settings, values):
                 set_value(scene, setting.pointer, value)
             steps = scenes.probe(scene).steps
-        except (BadInput, Failed) as reason:
+        except BadInput as reason:
             raise BadInput(f"{name}: {reason}") from None
+        except Failed:  # in its first step: its run will say so
+            steps = 1
         name += f"_{k}" if name in variants else ""
         scene.pop("expect", None)  # its values belong to the scene as it is
         variants[name] = Variant(name, Path(scenes.quick_room.name) / f"{k}.json", steps)
