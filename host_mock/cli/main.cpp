@@ -28,7 +28,7 @@ std::string usage_message(const CLI::App* app, const CLI::Error& error) {
     std::vector<std::string> known;
     for (const CLI::App* one : command->get_subcommands({})) known.push_back(one->get_name());
     for (const CLI::Option* one : command->get_options())
-      if (!one->get_positional() && !one->get_group().empty()) known.push_back(one->get_name());
+      if (!one->get_positional()) known.push_back(one->get_name());
     text = "ilaw: found '" + unknown.front() + "', expected " + (known.empty() ? "" : "one of ") +
            ilaw::host::joined(known);
   }

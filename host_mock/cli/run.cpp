@@ -384,7 +384,10 @@ void add_run(CLI::App& app, int& code) {
       ->excludes("--resume")
       ->expected(1)
       ->take_all();
-  command->add_option("--text", options->text)->group("");  // for commands in Python
+  command
+      ->add_option("--text", options->text,
+                   "File to read instead; names in it and messages stay those of the scene file")
+      ->excludes("--set");
   command->footer("Example: ilaw run plugins/contact/bouncing_ball.json --out results");
   command->callback([=, &code] {
     if (!options->settings.empty()) become_python(*command, {"ilaw.sweep", "numpy", "python3-numpy"});
