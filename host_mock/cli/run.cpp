@@ -1,6 +1,5 @@
 // `ilaw run`: a scene from JSON to results.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/run.hpp"
 #include "cli/commands.hpp"
 
 #include "audit/audit.hpp"
@@ -10,6 +9,7 @@
 #include "base/large_pages.hpp"
 #include "base/stop_request.hpp"
 #include "base/words.hpp"
+#include "check/progress.hpp"
 #include "cli/guard.hpp"
 #include "cli/python.hpp"
 #include "cli/terminal.hpp"
@@ -19,6 +19,7 @@
 #include "results/expectations.hpp"
 #include "results/fields.hpp"
 #include "results/history.hpp"
+#include "results/state_hash.hpp"
 #include "results/summary.hpp"
 #include "scene/read_meshes.hpp"
 #include "scene/scene.hpp"
@@ -39,6 +40,17 @@
 
 namespace ilaw::host {
 namespace {
+
+struct RunOptions {
+  std::filesystem::path scene, folder, text;  // text: a file to read instead; empty: none
+  std::int64_t checkpoint_every = 0;          // steps; 0: never
+  bool resume = false;
+  int threads = 1;
+  std::optional<double> tolerance = {};  // of coupled contacts
+  check::ProgressForm progress = check::ProgressForm::line;
+  bool audits = false;                // each step (audit/audit.hpp)
+  std::vector<std::string> settings;  // of --set, which ilaw.sweep reads
+};
 
 double seconds_since(double start) { return clock_seconds(CLOCK_MONOTONIC) - start; }
 
@@ -322,6 +334,46 @@ std::unique_ptr<Run> start_or_explain(Scene& scene, const RunOptions& options) {
   return nullptr;
 }
 
+// Of the expectations of a scene; a missed one is a complaint with its reason.
+int report_judged(const Scene& scene, const nlohmann::json& judged) {
+  int code = exit_done;
+  for (const nlohmann::json& one : judged) {
+    const std::string line = describe_judged(one);
+    if (one["within"]) {
+      std::printf("  %s\n", printable(line).c_str());
+      continue;
+    }
+    complain(scene.file.string() + ": missed: " + line + "; " + one["because"].get<std::string>());
+    code = exit_missed;
+  }
+  return code;
+}
+
+// In words and as an exit code.
+int report_run(const Scene& scene, const Run& run, const RunOptions& options) {
+  const Integrator& integrator = run.integrator();
+  const RunRecord& record = run.record;
+  const std::filesystem::path& folder = options.folder;
+  const std::string file = scene.file.string(), steps = std::to_string(integrator.steps());
+  if (!record.failure.empty()) {
+    complain(file + ": failed after step " + steps + ", time " + text_of("%g", integrator.time()) + ": " +
+             record.failure);
+    return exit_failed;
+  }
+  if (record.interrupted) {
+    complain(file + ": interrupted at step " + steps + " of " + std::to_string(scene.steps) +
+             "; the files in " + folder.string() + " are whole up to there" +
+             (options.checkpoint_every > 0 ? ", and --resume goes on from there" : ""));
+    return exit_failed;
+  }
+  std::printf(
+      "%s: %lld steps to time %g in %.2g s, energy balance closed to %.1e, state %s%s; results in %s\n",
+      printable(scene.title).c_str(), static_cast<long long>(integrator.steps()), integrator.time(),
+      record.seconds_total, integrator.energy().balance_error, state_hash(scene, integrator).c_str(),
+      scene.warnings.empty() && record.warnings.empty() ? "" : ", with warnings", folder.c_str());
+  return report_judged(scene, run.judged);
+}
+
 // Into options.folder, which it makes and holds; says on stderr what goes wrong.
 int run_scene(Scene& scene, const RunOptions& options) {
   const double start = clock_seconds(CLOCK_MONOTONIC);
@@ -336,7 +388,7 @@ int run_scene(Scene& scene, const RunOptions& options) {
   run->advance();
   run->finish(seconds_since(start));
   warn(run->record.warnings);
-  return report_run(scene, run->integrator(), run->record, run->judged, options);
+  return report_run(scene, *run, options);
 }
 
 int run(const RunOptions& options) {
