@@ -437,7 +437,7 @@ void add_run(CLI::App& app, int& code) {
       ->expected(1)
       ->take_all();
   command
-      ->add_option("--text", options->text,
+      ->add_option("--read-from", options->text,
                    "File to read instead; names in it and messages stay those of the scene file")
       ->excludes("--set");
   command->footer("Example: ilaw run plugins/contact/bouncing_ball.json --out results");

@@ -233,15 +233,15 @@ std::vector<json> objects_in(const std::string& lines) {
 TEST(Program, TellsItsProgressInLinesOfJson) {
   const auto folder = fresh_folder();
   const std::string seal = (fs::path(ILAW_SOURCE) / "host_mock/scenes/prestressed_seal.json").string(),
-                    file = written(long_ball(50.0), folder), out = " --out " + folder.string();
+                    file = written(long_ball(50.0), folder), out = " --out " + folder.string() + "/";
   const std::map<std::string, std::string> commands = {
-      {"run", "run " + file + out},
-      {"runs", "run " + file + " --set /time/end=40,50 --threads 2" + out},
+      {"run", "run " + file + out + "run"},
+      {"runs", "run " + file + " --set /time/end=40,50 --threads 2" + out + "runs"},
       {"stress", "stress --scenes 5 --steps 50"},
       {"check", "check contact --only info-within --only info-same"},
-      {"study", "study " + ball + " --law contact --levels 2 --repetitions 1" + out},
-      {"converge", "converge " + ball + " --levels 2" + out},
-      {"prestress", "run " + seal + out}};
+      {"study", "study " + ball + " --law contact --levels 2 --repetitions 1" + out + "study"},
+      {"converge", "converge " + ball + " --levels 2" + out + "converge"},
+      {"prestress", "run " + seal + out + "prestress"}};
   for (const auto& [task, command] : commands) {
     const Outcome told = run_program(command + " --json-lines");
     EXPECT_EQ(told.code, 0) << told.output;

@@ -199,7 +199,7 @@ class Scenes:
         folder, file = Path(room.name) / "out", Path(room.name) / "scene.json"
         (folder / "summary.json").unlink(missing_ok=True)
         file.write_text(json.dumps({key: scene[key] for key in scene if key != "expect" or key in kept}))
-        self._run("--text", file, "--out", folder, "--threads", str(self.threads))
+        self._run("--read-from", file, "--out", folder, "--threads", str(self.threads))
         return Run(folder)
 
     def _run(self, *options: Any) -> None:

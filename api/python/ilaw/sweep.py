@@ -137,7 +137,7 @@ class Sweep:
 
     def run(self, variant: Variant) -> int:
         """In a group of its own: Ctrl-C reaches this process alone, which passes it on. What the run says is said."""
-        command = [program(), "run", self.options.scene, "--text", variant.file, "--out", self.options.out / variant.name,
+        command = [program(), "run", self.options.scene, "--read-from", variant.file, "--out", self.options.out / variant.name,
                    "--json-lines", *self.passed]  # fmt: skip
         with self.lock:
             if self.stopped:
