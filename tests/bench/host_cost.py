@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What an interface adds to a step of `ilaw run`, beside its law alone: nanoseconds of processor time per point and step.
+"""What an interface adds to a step of `ilaw run`, beside its law alone: processor time per point and step, in ns.
 
-    ILAW_PATH=$PWD/build/release/lib/ilaw tests/bench/host_cost.py build/release/bin/ilaw [--points 1000 100000] [--runs 5]
+    ILAW_PATH=$PWD/build/release/lib/ilaw tests/bench/host_cost.py build/release/bin/ilaw [--points 1000] [--runs 5]
 
 Points under gravity in flight, half of them on a plane, all of them on it; the same points without the plane; and
 `ilaw bench` of the law with all outputs. Medians of runs in turn, because a busy machine disturbs all of them alike.
@@ -52,7 +52,8 @@ def main():
                     runs = [(alone(given.program, law, part, count), step(given.program, law, part, count, Path(name)),
                              step(given.program, None, part, count, Path(name))) for _ in range(given.runs)]
                     cells = [statistics.median(column) for column in zip(*((a, b - c, b) for a, b, c in runs))]
-                    print(f"| {law} | {count} | {situation} |", " | ".join(f"{cell:.1f}" for cell in cells), "|", flush=True)
+                    row = " | ".join([law, str(count), situation, *(f"{cell:.1f}" for cell in cells)])
+                    print(f"| {row} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -38,7 +38,7 @@ def anchor(heading):
 
 
 def leads_somewhere(page, target):
-    """Whether a link leads to a file or folder of the tree, and to a heading if it names one. No place outside is visited."""
+    """Whether a link leads to a file or folder of the tree, and to a heading if it names one; others are not visited."""
     if "://" in target or target.startswith("mailto:"):
         return True
     file, _, heading = target.partition("#")
@@ -78,13 +78,14 @@ class Pages(unittest.TestCase):
         self.assertEqual([name for name in named if not any(file.endswith(f"/{name}") for file in sources)], [])
 
     def test_of_contributing_names_every_build_mode(self):
-        page, presets = (ROOT / "docs/contributing.md").read_text(), json.loads((ROOT / "CMakePresets.json").read_text())
+        page = (ROOT / "docs/contributing.md").read_text()
+        presets = json.loads((ROOT / "CMakePresets.json").read_text())
         modes = {preset["name"] for preset in presets["configurePresets"]}
         self.assertGreater(len(modes), 4)
         self.assertEqual([mode for mode in modes if f"| `{mode}` |" not in page], [])
 
     def test_hold_the_promises_by_tests_that_exist(self):
-        """tests/abi/promises.txt has a promise in each line, its tests after the last ": "; words in brackets are remarks."""
+        """promises.txt has a promise in each line, its tests after the last ": "; words in brackets are remarks."""
         lines = [line for line in (ROOT / "tests/abi/promises.txt").read_text().splitlines() if line and line[0] != "#"]
         named = {name for line in lines for name in re.sub(r"\([^)]*\)", "", line.rpartition(": ")[2]).split()}
         self.assertGreater(len(named), 60)
@@ -92,9 +93,10 @@ class Pages(unittest.TestCase):
 
     def test_know_what_is_too_long(self):
         word, words = 101 * "a", 60 * "a" + " " + 60 * "b"
-        for line, wanted in ((words, True), ("- " + words, True), (word, False), ("- " + word, False),
-                             ("| " + words + " |", False), ("$" + words + "$", False), (99 * "a" + "é", False)):  # fmt: skip
-            self.assertEqual(is_too_long(line), wanted, line)
+        for line in (words, "- " + words):
+            self.assertTrue(is_too_long(line), line)
+        for line in (word, "- " + word, "| " + words + " |", "$" + words + "$", 99 * "a" + "é"):
+            self.assertFalse(is_too_long(line), line)
         self.assertEqual(anchor("## Which velocity, which step"), "which-velocity-which-step")
 
 

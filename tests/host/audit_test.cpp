@@ -85,12 +85,5 @@ TEST(AuditFinds, AnEquilibriumOfOtherLoads) {
   }
 }
 
-TEST(Audit, ChangesNoBitOfARun) {
-  const auto plain = fresh_folder(), audited = fresh_folder();
-  ASSERT_EQ(run_scene(shipped("bouncing_ball"), plain).code, 0);
-  ASSERT_EQ(run_scene(shipped("bouncing_ball"), audited, "--audit").code, 0);
-  EXPECT_EQ(text_of(plain / "history.csv"), text_of(audited / "history.csv"));
-}
-
 }  // namespace
 }  // namespace ilaw::host::testing

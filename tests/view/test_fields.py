@@ -16,6 +16,7 @@ from ilaw._results import Run, read_grid
 SOURCE = Path(__file__).resolve().parents[2]
 VERTEX, LINE, HEXAHEDRON = 1, 3, 12
 FLOOR = {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}
+LINE_BELOW = {"type": "plane", "point": [0, 0], "normal": [0, 1]}
 
 
 def shipped(name, **changes):
@@ -28,16 +29,16 @@ def drawn_along():
     """A point that is drawn along by 0.002, below its limit of friction: a spring that is a vector of the state."""
     law = {"stiffness": 1e4, "friction": 0.5, "tangential_stiffness": 1e3, "integration": "implicit"}
     return points(2, [{"mass": 1, "position": [0, 0]}], [
-        {"law": "penalty", "parameters": law, "nodes": "all", "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}}],
+        {"law": "penalty", "parameters": law, "nodes": "all", "obstacle": LINE_BELOW}],
         time={"dt": 1e-3, "end": 0.1}, loads=[{"type": "gravity", "acceleration": [1, -10]}])  # fmt: skip
 
 
 def warmed():
     """Points that friction heats."""
-    masses = [{"mass": 2, "position": [k, 0], "velocity": [4, 0], "thermal": {"specific_heat": 5, "initial_temperature": 290}}
-              for k in range(2)]  # fmt: skip
-    floor = {"type": "plane", "point": [0, 0], "normal": [0, 1]}
-    rubs = {"law": "coulomb", "nodes": "all", "parameters": {"friction": 0.3, "heat_partition": 0.25}, "obstacle": floor}
+    thermal = {"specific_heat": 5, "initial_temperature": 290}
+    masses = [{"mass": 2, "position": [k, 0], "velocity": [4, 0], "thermal": thermal} for k in range(2)]
+    law = {"friction": 0.3, "heat_partition": 0.25}
+    rubs = {"law": "coulomb", "nodes": "all", "parameters": law, "obstacle": LINE_BELOW}
     return points(2, masses, [rubs], loads=[{"type": "gravity", "acceleration": [0, -10]}])
 
 
@@ -55,7 +56,8 @@ def lowest(x):
 SCENES = {
     "peeled": (peeled, 20, 3, (80, HEXAHEDRON), {"interface0": lowest}),
     "block_impact": (lambda: shipped("block_impact"), 40, 3, (512, HEXAHEDRON),
-                     {"floor": lambda x: np.arange(len(x)), "ball": lambda x: np.flatnonzero(np.isclose(x[:, 0], 0.1))}),
+                     {"floor": lambda x: np.arange(len(x)),
+                      "ball": lambda x: np.flatnonzero(np.isclose(x[:, 0], 0.1))}),
     "two_bars": (lambda: shipped("two_bars"), 100, 1, (300, LINE), {"interface0": lambda x: np.array([101])}),
     "drawn_along": (drawn_along, 10, 2, (1, VERTEX), {"interface0": lambda x: np.array([0])}),
     "warmed": (warmed, 50, 2, (2, VERTEX), {"interface0": lambda x: np.array([0, 1])}),
@@ -75,7 +77,8 @@ def test_fields_are_those_of_the_history(tmp_path, name):
     seen = set()
     for row, (_, file) in enumerate(files[1:]):
         grid = read_grid(file)
-        assert (grid.points == x).all() and grid.data.GetCellType(0) == cells[1] and grid.data.GetNumberOfCells() == cells[0]
+        assert (grid.points == x).all()
+        assert (grid.data.GetNumberOfCells(), grid.data.GetCellType(0)) == cells
         touched = np.zeros(len(x), bool)
         for interface, nodes in members.items():
             own = nodes(x)
@@ -93,18 +96,20 @@ def test_fields_are_those_of_the_history(tmp_path, name):
                     none = np.zeros(len(rows)) if c else None  # of a tangential vector in 2D there is one component
                     wanted = [columns.get(f"n{n}.{interface}.{at}", columns.get(f"n{n}.{at}", none))[row] for n in own]
                     assert values[own, c].tolist() == wanted, (file.name, at)
-                    seen |= {(quantity, value) for value in wanted} if quantity in ("status", "ruptures") else {quantity}
+                    seen |= {(quantity, value) for value in wanted} | {quantity}
             traction = grid.nodes[prefix + "traction"]
             assert np.isnan(traction[outside]).all()
             if interface == "interface0" and d == 3:
                 assert traction[own, 2] == pytest.approx([columns[f"n{n}.pressure"][row] for n in own], rel=1e-12)
         for field in ("u", "v", "r"):
-            own = np.flatnonzero(touched) if field == "r" else range(len(x))  # a driven node has the impulse of its holder
+            # A driven node has the impulse of its holder in the history.
+            own = np.flatnonzero(touched) if field == "r" else range(len(x))
             wanted = [[columns[f"n{n}.{field}{c}"][row] for c in range(d)] + [0] * (3 - d) for n in own]
             assert grid.nodes[field][own].tolist() == wanted, (file.name, field)
         if "n0.T" in columns:
             assert grid.nodes["temperature"].tolist() == [columns[f"n{n}.T"][row] for n in range(len(x))]
-    assert {"peeled": {("status", 4), ("status", 5), ("ruptures", 1)}, "drawn_along": {"spring"}}.get(name, set()) <= seen
+    expected = {"peeled": {("status", 4), ("status", 5), ("ruptures", 1)}, "drawn_along": {"spring"}}
+    assert expected.get(name, set()) <= seen
 
 
 def test_mesh_and_obstacles_are_those_of_the_scene(tmp_path):
@@ -139,8 +144,8 @@ def test_stress_is_that_of_the_strain(tmp_path):
     block = {"model": {"type": "blocks", "blocks": [body]}, "initial": [{"gradient": gradient.tolist()}]}
     mu, lame = 2e6 / 2.6, 2e6 * 0.3 / (1.3 * 0.4)
     s = mu * (gradient + gradient.T) + lame * np.trace(gradient) * np.eye(3)
-    bar = {"model": {"type": "bars", "bars": [{"length": 2, "elements": 4, "young": 3e6, "density": 1, "section": 0.5}]},
-           "initial": [{"gradient": [[0.005]]}]}  # fmt: skip
+    rod = {"length": 2, "elements": 4, "young": 3e6, "density": 1, "section": 0.5}
+    bar = {"model": {"type": "bars", "bars": [rod]}, "initial": [{"gradient": [[0.005]]}]}
     for scene, wanted in ((block, s), (bar, np.diag([15000, 0, 0]))):
         scene |= {"time": {"cfl": 0.5, "end": 1e-3}, "interfaces": [], "output": {"fields": 1}}
         grid = read_grid(run(scene, tmp_path) / "fields_000000.vtu")
@@ -171,9 +176,11 @@ def test_state_of_a_run_that_diverged_is_written_and_named(tmp_path):
              "interfaces": [{"law": "contact", "nodes": "b.z_min", "obstacle": FLOOR}]}  # fmt: skip
     body["velocity"] = [0, 0, -60]
     (tmp_path / "scene.json").write_text(json.dumps(scene))
-    done = subprocess.run([PROGRAM, "run", tmp_path / "scene.json", "--out", tmp_path / "results"], capture_output=True, text=True)
+    command = [PROGRAM, "run", tmp_path / "scene.json", "--out", tmp_path / "results"]
+    done = subprocess.run(command, capture_output=True, text=True)
     file = tmp_path / "results/diverged.vtu"
-    said = re.search(r"; element (\d+).* of the undeformed body, is turned inside out; half the step is \"cfl\": 0.45", done.stderr)
+    said = re.search(r"; element (\d+).* of the undeformed body, is turned inside out; half the step is \"cfl\": 0.45",
+                     done.stderr)
     assert done.returncode == 1 and said and f"; that state is in {file}" in done.stderr, done.stderr
     assert read_grid(file).cells["inverted"][int(said[1])] == 1
     body["velocity"], scene["time"]["end"] = [0, 0, -1], 1e-3
