@@ -13,9 +13,8 @@ quiet=()
 [ -t 1 ] || quiet=(-- --quiet)  # on a terminal ninja shows how far it is
 cmake --build --preset release "${quiet[@]}"
 
-for scene in host_mock/scenes/*.json plugins/*/*.json; do
-  results=build/release/demo/$(basename "$scene" .json)
-  build/release/bin/ilaw run "$scene" --out "$results"
-done
+# As many at once as there are processors; what each says comes together.
+printf '%s\n' host_mock/scenes/*.json plugins/*/*.json | xargs -P "$(nproc)" -I{} sh -c '
+  said=$(build/release/bin/ilaw run "$1" --threads 1 --out build/release/demo/"$(basename "$1" .json)") && echo "$said"' _ {}
 echo "pictures: build/release/demo"
 /usr/bin/python3 host_mock/demo_page.py build/release/demo

@@ -3,9 +3,9 @@
 # there. Usage: host_mock/setup.sh [tests|ci|results|site|dealii] [with-solvers]; without arguments for host_mock/demo.sh.
 set -euo pipefail
 
-packages=(g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libtinyxml2-dev
+packages=(g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libcli11-dev libtinyxml2-dev
           libvtk9-dev zlib1g-dev python3-numpy python3-matplotlib python3-vtk9 libjs-three)
-for_tests=(gfortran binutils abigail-tools libgtest-dev libgmock-dev libbenchmark-dev libsiconos-numerics-dev libfclib-dev qemu-user
+for_tests=(gfortran binutils libgtest-dev libgmock-dev libbenchmark-dev libsiconos-numerics-dev libfclib-dev qemu-user
            dpkg-dev pkgconf python3-pytest python3-setuptools python3-wheel python3-pip python3-venv
            python3-pycparser python3-yaml)
 # Foreign solvers in which the laws are tested, and MPI. They are large: 1 GB with their dependencies.

@@ -77,4 +77,6 @@ fi
 quiet=()
 [ -t 1 ] || quiet=(-- --quiet)  # on a terminal ninja shows how far it is
 cmake --build --preset release "${targets[@]}" "${quiet[@]}"
+# Threads that wait for each other must not keep busy the processors that other tests run on.
+export OMP_WAIT_POLICY=passive
 exec ctest --test-dir build/release --no-tests=error --output-on-failure -j "$(nproc)" "$@"

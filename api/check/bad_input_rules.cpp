@@ -3,7 +3,6 @@
 #include "check/rule.hpp"
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace ilaw::check {
@@ -161,10 +160,8 @@ bool extremes(const Trial& trial, Draw& draw) {
       const double most = trial.setup.floats() ? 38.0 : 308.0;
       const double size = std::pow(10.0, draw.within(-most - 12.0, most));
       for (std::size_t c = 0; c < in.dimension; ++c) in.v_free[i * in.dimension + c] *= size;
-      if (!in.v_smooth.empty() && i % 4 != 0)
-        in.set_vector(in.v_smooth, i, scaled(size, in.vector(in.v_smooth, i)));
-      if (in.spins())
-        in.set_vector(in.spin_free, i, scaled(i % 5 == 0 ? 1.0 : size, in.vector(in.spin_free, i)));
+      if (!in.v_smooth.empty() && i % 4 != 0) in.set_vector(in.v_smooth, i, size * in.vector(in.v_smooth, i));
+      if (in.spins()) in.set_vector(in.spin_free, i, (i % 5 == 0 ? 1.0 : size) * in.vector(in.spin_free, i));
       if (i % 3 == 0) in.gap[i] *= std::pow(10.0, draw.within(-most, most));
       const double scale = std::pow(10.0, draw.within(-0.65 * most, 0.65 * most));
       for (std::size_t c = 0; i % 2 == 0 && c < in.form_width; ++c)

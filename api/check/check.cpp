@@ -8,8 +8,11 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstring>
 #include <exception>
+#include <functional>
 #include <mutex>
+#include <string_view>
 #include <thread>
 
 namespace ilaw::check {
@@ -32,56 +35,39 @@ namespace {
 
 using nlohmann::json;
 
-// CBOR keeps all bits of a number, and any text.
+using Checksum = std::size_t;
+Checksum checksum_of(const char* begin, std::size_t size) {
+  return std::hash<std::string_view>{}({begin, size});
+}
+
+// CBOR keeps all bits of a number, and any text. A checksum stands before it, since a library may write over
+// what its process leaves, and nlohmann's parser of CBOR calls itself for each level of depth.
 std::string packed(const Left& left) {
   std::string bytes;
   json::to_cbor(left, bytes);
-  return bytes;
+  const Checksum sum = checksum_of(bytes.data(), bytes.size());
+  return std::string(reinterpret_cast<const char*>(&sum), sizeof sum) + bytes;
 }
 
-// Stops at a value that lies deeper than those of Left: nlohmann's parser of CBOR calls itself for each
-// level.
-class Shallow : public nlohmann::json_sax<json> {
- public:
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool key(string_t&) override { return true; }
-  bool start_object(std::size_t) override { return ++depth_ <= most; }
-  bool start_array(std::size_t) override { return ++depth_ <= most; }
-  bool end_object() override { return --depth_ >= 0; }
-  bool end_array() override { return --depth_ >= 0; }
-  bool parse_error(std::size_t, const std::string&, const json::exception&) override { return false; }
-
- private:
-  static constexpr int most = 8;
-  int depth_ = 0;
-};
-
-// A library may have written over what its process left.
 Left unpacked(const std::string& bytes) {
-  Shallow shallow;
-  try {
-    if (json::sax_parse(bytes, &shallow, json::input_format_t::cbor))
-      return json::from_cbor(bytes).get<Left>();
-  } catch (const json::exception&) {  // numbers where texts should be
+  Checksum sum = 0;
+  if (bytes.size() > sizeof sum) {
+    std::memcpy(&sum, bytes.data(), sizeof sum);
+    if (sum == checksum_of(&bytes[sizeof sum], bytes.size() - sizeof sum))
+      return json::from_cbor(bytes.begin() + sizeof sum, bytes.end()).get<Left>();
   }
   return {.finding = {"the library wrote over the result of the check", "that it writes to its own memory"}};
 }
 
 // In the child.
 std::string judged(const std::string& file, const std::string& law, const Rule& rule, std::uint64_t seed,
-                   const Options& options) {
+                   const Options& options, const Part& part) {
   Left left;
   try {
     const ProcessState before_loading;
     calling("the loader");
     const ilaw::library library(file);
-    keep_part(options.part);
+    keep_part(part);
     rule.judge.look({library, *library.law(law), seed, options.parameters, before_loading});
   } catch (const Finding& finding) {
     left.finding = finding;
@@ -92,17 +78,6 @@ std::string judged(const std::string& file, const std::string& law, const Rule& 
   }
   left.reach = reach_of_thread();
   return packed(left);
-}
-
-Outcome judge_with(std::uint64_t seed, const std::string& file, const std::string& law, const Rule& rule,
-                   const Options& options) {
-  const auto start = std::chrono::steady_clock::now();
-  const Ending ending = run_apart(options.limits, [&] { return judged(file, law, rule, seed, options); });
-  Outcome outcome = outcome_of(law, rule.id, ending);
-  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  outcome.seed = seed;
-  outcome.part = options.part;
-  return outcome;
 }
 
 // Leaves out halves, quarters and so on of a list from its end, as long as "is_enough" says so of the rest.
@@ -117,39 +92,6 @@ void shrink(std::vector<std::size_t>& list, Enough is_enough) {
       if (!is_enough()) list = before;
       end = begin;
     }
-}
-
-// The same rule broken by fewer nodes in fewer steps.
-Outcome shrunken(Outcome found, const std::string& file, const std::string& law, const Rule& rule,
-                 Options options) {
-  constexpr std::size_t most_nodes = 512, most_steps = 16;
-  Part& part = options.part;
-  part = {numbers_below(most_nodes), numbers_below(most_steps)};
-  const auto is_broken = [&] {
-    const Outcome less = judge_with(found.seed, file, law, rule, options);
-    if (less.verdict == Verdict::broken) found = less;
-    return less.verdict == Verdict::broken;
-  };
-  shrink(part.nodes, is_broken);
-  shrink(part.steps, is_broken);
-  shrink(part.nodes, is_broken);
-  return found;
-}
-
-// The first finding, or what all seeds reached. A rule that one seed could judge is judged, unless another
-// one came to the limit of time.
-Outcome judge_apart(const std::string& file, const std::string& law, const Rule& rule,
-                    const Options& options) {
-  Outcome outcome = judge_with(options.seeds.at(0), file, law, rule, options);
-  for (std::size_t k = 1; k < options.seeds.size() && rule.judge.needs == Needs::motion; ++k) {
-    if (outcome.verdict == Verdict::broken || outcome.late) break;
-    Outcome next = judge_with(options.seeds[k], file, law, rule, options);
-    next.seconds += outcome.seconds;
-    next.reach.add(outcome.reach);
-    if (next.verdict == Verdict::not_judged && !next.late) next.verdict = outcome.verdict;
-    outcome = std::move(next);
-  }
-  return outcome;
 }
 
 // Calls work(0) to work(count - 1), as many at a time as there are processors. Each waits for a process of
@@ -179,57 +121,48 @@ bool wanted(const Rule& rule, const Options& options) {
          std::find(options.only.begin(), options.only.end(), rule.id) != options.only.end();
 }
 
-// A law's rules, those first that others need.
-class LawCheck {
- public:
-  LawCheck(std::string file, std::string law, const Options& options, std::vector<Outcome>& outcomes,
-           Progress& progress)
-      : file_(std::move(file)),
-        law_(std::move(law)),
-        options_(options),
-        outcomes_(outcomes),
-        progress_(progress) {}
+// Those that others need.
+bool is_basic(const Rule& rule) {
+  const std::string id = rule.id;
+  return id == opens_id || id == creates_id || id == returns_id;
+}
 
+// A law's rules, the basic ones first.
+struct LawCheck {
   void run() {
-    const std::size_t first = outcomes_.size();
+    const std::size_t first = outcomes.size();
     judge_all();
-    if (returns_) fuzz(first);
-    for (std::size_t k = first; k < outcomes_.size(); ++k) all_.add(outcomes_[k].reach);
-    for (std::size_t k = first; k < outcomes_.size(); ++k) {
-      Outcome& outcome = outcomes_[k];
+    if (returns) fuzz(first);
+    for (std::size_t k = first; k < outcomes.size(); ++k) all.add(outcomes[k].reach);
+    for (std::size_t k = first; k < outcomes.size(); ++k) {
+      Outcome& outcome = outcomes[k];
       const bool moves = outcome.reach.steps > 0 && rule_of(outcome.rule).judge.needs == Needs::motion;
-      if (outcome.verdict == Verdict::passed && moves) outcome.missing = missing_in(outcome.reach, all_);
+      if (outcome.verdict == Verdict::passed && moves) outcome.missing = missing_in(outcome.reach, all);
     }
   }
 
-  static bool is_basic(const Rule& rule) {
-    return rule.id == std::string(opens_id) || rule.id == std::string(creates_id) ||
-           rule.id == std::string(returns_id);
-  }
-
- private:
   void judge_all() {
-    holds(creates_id, creates_);
-    if (creates_) holds(returns_id, returns_);
+    holds(creates_id, creates);
+    if (creates) holds(returns_id, returns);
     std::vector<const Rule*> left;
     for (const Rule& rule : rules())
-      if (wanted(rule, options_) && !is_basic(rule)) left.push_back(&rule);
-    const std::size_t first = outcomes_.size();
-    outcomes_.resize(first + left.size());
+      if (wanted(rule, options) && !is_basic(rule)) left.push_back(&rule);
+    const std::size_t first = outcomes.size();
+    outcomes.resize(first + left.size());
     in_parallel(left.size(), [&](std::size_t k) {
-      outcomes_[first + k] = judge(*left[k]);
-      progress_.add(1.0);
+      outcomes[first + k] = judge(*left[k]);
+      progress.add(1.0);
     });
   }
 
   // Seed after seed for the rules that move nodes and are not broken, until the time is over.
   void fuzz(std::size_t first) {
     using Clock = std::chrono::steady_clock;
-    const auto end = Clock::now() + std::chrono::duration<double>(60.0 * options_.fuzz_minutes);
-    std::uint64_t seed = *std::max_element(options_.seeds.begin(), options_.seeds.end());
+    const auto end = Clock::now() + std::chrono::duration<double>(60.0 * options.fuzz_minutes);
+    std::uint64_t seed = *std::max_element(options.seeds.begin(), options.seeds.end());
     std::vector<Outcome*> left;
-    for (std::size_t k = first; k < outcomes_.size(); ++k)
-      if (rule_of(outcomes_[k].rule).judge.needs == Needs::motion) left.push_back(&outcomes_[k]);
+    for (std::size_t k = first; k < outcomes.size(); ++k)
+      if (rule_of(outcomes[k].rule).judge.needs == Needs::motion) left.push_back(&outcomes[k]);
     for (;;) {
       std::erase_if(left, [](const Outcome* one) { return one->verdict == Verdict::broken; });
       if (left.empty() || Clock::now() >= end) return;
@@ -241,38 +174,78 @@ class LawCheck {
   }
 
   void judge_once_more(Outcome& outcome, std::uint64_t seed) const {
-    const Rule& rule = rule_of(outcome.rule);
-    const Outcome next = judge_with(seed, file_, law_, rule, options_);
+    const Outcome next = judge_with(seed, rule_of(outcome.rule), options.part);
     if (next.verdict == Verdict::broken)
-      outcome = shrunken(next, file_, law_, rule, options_);
+      outcome = shrunken(next);
     else
       outcome.reach.add(next.reach);
   }
 
+  // The same rule broken by fewer nodes in fewer steps.
+  Outcome shrunken(Outcome found) const {
+    constexpr std::size_t most_nodes = 512, most_steps = 16;
+    Part part{numbers_below(most_nodes), numbers_below(most_steps)};
+    const auto is_broken = [&] {
+      const Outcome less = judge_with(found.seed, rule_of(found.rule), part);
+      if (less.verdict == Verdict::broken) found = less;
+      return less.verdict == Verdict::broken;
+    };
+    shrink(part.nodes, is_broken);
+    shrink(part.steps, is_broken);
+    shrink(part.nodes, is_broken);
+    return found;
+  }
+
+  Outcome judge_with(std::uint64_t seed, const Rule& rule, const Part& part) const {
+    const auto start = std::chrono::steady_clock::now();
+    Outcome outcome =
+        outcome_of(law, rule.id,
+                   run_apart(options.limits, [&] { return judged(file, law, rule, seed, options, part); }));
+    outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    outcome.seed = seed;
+    outcome.part = part;
+    return outcome;
+  }
+
+  // The first finding, or what all seeds reached. A rule that one seed could judge is judged, unless another
+  // one came to the limit of time.
+  Outcome judge_apart(const Rule& rule) const {
+    Outcome outcome = judge_with(options.seeds.at(0), rule, options.part);
+    for (std::size_t k = 1; k < options.seeds.size() && rule.judge.needs == Needs::motion; ++k) {
+      if (outcome.verdict == Verdict::broken || outcome.late) break;
+      Outcome next = judge_with(options.seeds[k], rule, options.part);
+      next.seconds += outcome.seconds;
+      next.reach.add(outcome.reach);
+      if (next.verdict == Verdict::not_judged && !next.late) next.verdict = outcome.verdict;
+      outcome = std::move(next);
+    }
+    return outcome;
+  }
+
   Outcome judge(const Rule& rule) const {
-    const char* lacking = rule.judge.needs >= Needs::instance && !creates_ ? creates_id
-                          : rule.judge.needs == Needs::motion && !returns_ ? returns_id
-                                                                           : nullptr;
-    if (lacking) return {law_, rule.id, Verdict::not_judged, {}, std::string("needs ") + lacking};
-    return judge_apart(file_, law_, rule, options_);
+    const char* lacking = rule.judge.needs >= Needs::instance && !creates ? creates_id
+                          : rule.judge.needs == Needs::motion && !returns ? returns_id
+                                                                          : nullptr;
+    if (lacking) return {law, rule.id, Verdict::not_judged, {}, std::string("needs ") + lacking};
+    return judge_apart(rule);
   }
 
   // Kept in the outcomes where it was asked for, or is why others are not judged.
   void holds(const char* id, bool& found) {
-    const Outcome outcome = judge_apart(file_, law_, rule_of(id), options_);
+    const Outcome outcome = judge_apart(rule_of(id));
     found = outcome.verdict != Verdict::broken;
-    if (wanted(rule_of(id), options_) || !found)
-      outcomes_.push_back(outcome);
+    if (wanted(rule_of(id), options) || !found)
+      outcomes.push_back(outcome);
     else
-      all_.add(outcome.reach);
+      all.add(outcome.reach);
   }
 
-  std::string file_, law_;
-  const Options& options_;
-  std::vector<Outcome>& outcomes_;
-  Progress& progress_;
-  bool creates_ = false, returns_ = false;
-  Reach all_;  // what the rules reached together
+  const std::string &file, &law;
+  const Options& options;
+  std::vector<Outcome>& outcomes;
+  Progress& progress;
+  bool creates = false, returns = false;
+  Reach all{};  // what the rules reached together
 };
 
 std::string describe(const std::string& name_or_path) {
@@ -371,11 +344,11 @@ std::vector<Outcome> check(const std::string& name_or_path, const Options& optio
   const auto is_chosen = [&](const std::string& law) { return options.law.empty() || options.law == law; };
   const auto laws = std::count_if(opened.laws.begin(), opened.laws.end(), is_chosen);
   const auto rules_of_law = std::count_if(rules().begin(), rules().end(), [&](const Rule& rule) {
-    return wanted(rule, options) && !LawCheck::is_basic(rule);
+    return wanted(rule, options) && !is_basic(rule);
   });
   Progress progress("check", "rules", static_cast<double>(laws * rules_of_law), options.progress);
   for (const std::string& law : opened.laws)
-    if (is_chosen(law)) LawCheck(opened.path, law, options, outcomes, progress).run();
+    if (is_chosen(law)) LawCheck{opened.path, law, options, outcomes, progress}.run();
   return outcomes;
 }
 

@@ -31,47 +31,41 @@ double stored_of(const Results& found, std::size_t i) {
 }
 
 // Sizes of v_free + H r + k n x m and of w_free + J m - k n x r, in which they round.
-struct Terms {
-  double velocity = 0.0, spin = 0.0;
-};
-Terms terms_of(const Inputs& in, const Results& found, std::size_t i) {
-  const Vector r = found.vector(found.impulse, i, in.dimension), m = found.moment_at(i);
-  const double k = std::abs(in.k(i));
-  return {length(in.vector(in.v_free, i)) + length(times(in.h(i), r)) + k * length(m),
-          length(in.spin(in.spin_free, i)) + length(times(in.j(i), m)) + k * length(r)};
+using Sizes = Eigen::Vector2d;
+Sizes halves_of(const Wrench& wrench) { return {wrench.head<3>().norm(), wrench.tail<3>().norm()}; }
+Sizes sizes_of(const Inputs& in, const Results& found, std::size_t i) {
+  const Eigen::Matrix<double, 6, 6> gain = in.gain(i);
+  const Wrench action = found.action(i);
+  const Sizes own{(gain.topLeftCorner<3, 3>() * action.head<3>()).norm(),
+                  (gain.bottomRightCorner<3, 3>() * action.tail<3>()).norm()};
+  const double k = std::sqrt(0.5) * gain.topRightCorner<3, 3>().norm();
+  return halves_of(in.free(i)) + own + k * halves_of(action).reverse();
 }
 
 // v^- is the last step's v_free + H r as the host rounded it. A law that moves its bond by what it solved
 // knows it unrounded, so that the work differs from what becomes of it by |r| ulp (|v_free| + |H r|) of the
 // last step: all there is where a node was stopped, and only that is left of its velocity.
 Step step_of(const Inputs& in, const Results& found, std::size_t i, double stored_before,
-             const Terms& before) {
-  const Vector r = found.vector(found.impulse, i, in.dimension), m = found.moment_at(i);
-  const Motion gained = in.gained(i, r, m);
+             const Sizes& before) {
+  const Wrench action = found.action(i);
   // The work r.(v^- + v)/2 with v = v_free + H r. That of a moment likewise.
-  const double work = 0.5 * (dot(r, in.vector(in.v_previous, i)) + dot(r, in.vector(in.v_free, i)) +
-                             dot(r, gained.velocity)),
-               spin_work = 0.5 * (dot(m, in.spin(in.spin_previous, i)) + dot(m, in.spin(in.spin_free, i)) +
-                                  dot(m, gained.spin)),
+  const double work = 0.5 * action.dot(in.previous(i) + in.free(i) + in.gain(i) * action),
                now = stored_of(found, i);
-  const Terms terms = terms_of(in, found, i);
+  Sizes actions = halves_of(action);
   // In the host's axes a tangential velocity is off by the rounding of v_free, in any direction: so is what
   // stops it.
-  const bool may_stick = !in.normal.empty() && r != Vector{};
-  const double stopped =
-      may_stick ? length(in.vector(in.v_free, i)) / length(times(in.h(i), in.normal_at(i))) : 0.0;
-  const double size = (length(r) + stopped) * (terms.velocity + before.velocity) +
-                      length(m) * (terms.spin + before.spin) + std::abs(now) + std::abs(stored_before);
-  return {in, found, i, work + spin_work, now - stored_before, size};
+  if (!in.normal.empty() && actions[0] > 0.0)
+    actions[0] += in.vector(in.v_free, i).norm() / (in.h(i) * in.normal_at(i)).norm();
+  const double size = actions.dot(sizes_of(in, found, i) + before) + std::abs(now) + std::abs(stored_before);
+  return {in, found, i, work, now - stored_before, size};
 }
 
 // The velocity after this step is that before the next one, and the gap follows it.
 void go_on(Inputs& in, const Results& found, std::size_t i) {
-  const Motion gained = in.gained(i, found.vector(found.impulse, i, in.dimension), found.moment_at(i));
-  const Vector v = sum(in.vector(in.v_free, i), gained.velocity);
-  in.set_vector(in.v_free, i, v);
-  if (in.spins()) in.set_vector(in.spin_free, i, sum(in.vector(in.spin_free, i), gained.spin));
-  in.gap[i] += in.position_step * dot(in.normal_at(i), v);
+  const Wrench after = in.free(i) + in.gain(i) * found.action(i);
+  in.set_vector(in.v_free, i, after.head<3>());
+  if (in.spins()) in.set_vector(in.spin_free, i, after.tail<3>());
+  in.gap[i] += in.position_step * in.normal_at(i).dot(after.head<3>());
 }
 
 // A node is turned round within a step, pushed a little, or left alone.
@@ -100,7 +94,7 @@ Judge on_flights(void (*look)(const Trial& trial, const Step& step)) {
             in.gap[i] = in.gap_offset[i] + draw.within(0.0, 3.0) * in.position_step;
           Started arrays(trial, in);
           std::vector<double> stored(point_count);
-          std::vector<Terms> terms(point_count);
+          std::vector<Sizes> sizes(point_count, Sizes::Zero());
           for (std::size_t k = 0; k < steps; ++k) {
             in.v_previous = in.v_free;
             in.spin_previous = in.spin_free;
@@ -113,9 +107,9 @@ Judge on_flights(void (*look)(const Trial& trial, const Step& step)) {
             if (std::isfinite(found.report.stable_velocity_step) && found.report.stable_velocity_step > 0.0)
               return false;
             for (std::size_t i = 0; i < point_count; ++i) {
-              look(trial, step_of(in, found, i, stored[i], terms[i]));
+              look(trial, step_of(in, found, i, stored[i], sizes[i]));
               stored[i] = stored_of(found, i);
-              terms[i] = terms_of(in, found, i);
+              sizes[i] = sizes_of(in, found, i);
               go_on(in, found, i);
             }
             in.time += in.position_step;
@@ -156,9 +150,8 @@ void balanced(const Trial& trial, const Step& step) {
 // A node alone that approaches, closed, as a batch of its own.
 Inputs approaching(const Trial& trial, Draw& draw) {
   Inputs in = draw_script(trial, draw, {1, 1}, true)[0];
-  const Vector n = in.normal_at(0);
-  Vector v{};
-  for (std::size_t c = 0; c < in.dimension; ++c) v[c] = -draw.within(0.2, 1.0) * n[c];
+  Vector v = -in.normal_at(0);
+  for (std::size_t c = 0; c < in.dimension; ++c) v[c] *= draw.within(0.2, 1.0);
   in.set_vector(in.v_free, 0, v);
   in.v_smooth.clear();  // it is v_free
   return in;
@@ -173,15 +166,12 @@ std::optional<Slopes> slopes_of(Arrays& arrays, const Inputs& in, const std::vec
   const auto normal_impulse = [&](double gap, double velocity) {
     Inputs moved = in;
     moved.gap[0] += gap;
-    Vector v = in.vector(in.v_free, 0);
-    for (std::size_t c = 0; c < in.dimension; ++c) v[c] += velocity * n[c];
-    moved.set_vector(moved.v_free, 0, v);
+    moved.set_vector(moved.v_free, 0, in.vector(in.v_free, 0) + velocity * n);
     moved.v_previous = moved.v_free;
     arrays.set_state(state);
-    const Results found = arrays.evaluate(moved);
-    return dot(n, found.vector(found.impulse, 0, in.dimension));
+    return n.dot(arrays.evaluate(moved).action(0).head<3>());
   };
-  const double gap = 1e-4 * std::abs(in.slack(0)), speed = 1e-4 * length(in.vector(in.v_free, 0));
+  const double gap = 1e-4 * std::abs(in.slack(0)), speed = 1e-4 * in.vector(in.v_free, 0).norm();
   const double middle = normal_impulse(0.0, 0.0);
   const auto slope = [&](double above, double below, double by) -> std::optional<double> {
     const double bend = std::abs(above - 2.0 * middle + below);
@@ -205,7 +195,7 @@ bool stable_step_bound(const Trial& trial, Draw& draw) {
     Arrays arrays(trial, in);
     double limit = infinity;
     for (int pass = 0; pass < 4; ++pass) {  // it may depend on the step and on the gap
-      const double depth = in.position_step * length(in.vector(in.v_free, 0));
+      const double depth = in.position_step * in.vector(in.v_free, 0).norm();
       in.gap[0] = in.gap_offset[0] - depth;
       in.v_previous = in.v_free;
       arrays.initialise(in);
@@ -220,7 +210,7 @@ bool stable_step_bound(const Trial& trial, Draw& draw) {
     const std::optional<Slopes> found = slopes_of(arrays, in, arrays.state());
     if (!found) continue;
     const Vector n = in.normal_at(0);
-    const double h = dot(n, times(in.h(0), n)), product = 1.0 + h * found->by_velocity,
+    const double h = n.dot(in.h(0) * n), product = 1.0 + h * found->by_velocity,
                  sum = 1.0 + product + in.position_step * h * found->by_gap;
     judged = true;
     if (product < -1.0 - slack || sum < -1.0 - product - slack)

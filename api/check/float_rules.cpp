@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cfenv>
-#include <cmath>
 #include <limits>
 
 #if defined(__x86_64__)

@@ -147,10 +147,17 @@ std::vector<Rule> independence_rules() {
   constexpr const char* alone = "ilaw.h, ilaw_law.evaluate";
   return {
       {"layout-components", "Arrays component by component give the same bits.", "ilaw.h, ilaw_input",
-       in_layouts({{"component by component", {.order = Order::by_component}}})},
+       in_layouts(
+           {{"component by component", {.order = Order::by_component}},
+            {"with state_out alone component by component", {.order_of_state_out = Order::by_component}},
+            {"component by component but for state_out",
+             {.order = Order::by_component, .order_of_state_out = Order::interleaved}}})},
       {"layout-strides", "Arrays with any strides give the same bits.", "ilaw.h, ilaw_input",
        in_layouts({{"with strides of 2 and more", {.order = Order::spread}},
-                   {"with negative strides", {.order = Order::backward}}})},
+                   {"with negative strides", {.order = Order::backward}},
+                   {"with strides of state_out alone", {.order_of_state_out = Order::spread}},
+                   {"with negative strides of all but state_out",
+                    {.order = Order::backward, .order_of_state_out = Order::interleaved}}})},
       {"layout-shared", "A node stride of 0 gives all nodes the same value.", "ilaw.h, ilaw_input",
        on_trials_per_node_too(shared_value)},
       {"index-32", "A list of nodes in 32 bits gives the same bits, from base 0 and 1.",

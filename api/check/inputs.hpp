@@ -4,6 +4,8 @@
 
 #include "check/trial.hpp"
 
+#include <Eigen/Dense>
+
 #include <array>
 #include <cstddef>
 #include <numeric>
@@ -11,22 +13,15 @@
 
 namespace ilaw::check {
 
-using Vector = std::array<double, 3>;
-using Matrix = std::array<Vector, 3>;  // rows
+using Vector = Eigen::Vector3d;
+using Matrix = Eigen::Matrix3d;
+// A velocity and a spin, or an impulse and a moment.
+using Wrench = Eigen::Matrix<double, 6, 1>;
 
-inline double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector times(const Matrix& m, const Vector& a);
-Matrix transposed(const Matrix& m);
-Vector sum(const Vector& a, const Vector& b);
-Vector scaled(double factor, const Vector& a);
-Vector cross(const Vector& a, const Vector& b);
-double length(const Vector& a);
 Vector vector_of(const std::vector<double>& values, std::size_t node, std::size_t dimension);
-
-// Velocity and spin, or what an impulse and a moment add to them.
-struct Motion {
-  Vector velocity{}, spin{};
-};
+// 0 without spins.
+Wrench wrench_of(const std::vector<double>& linear, const std::vector<double>& angular, std::size_t node,
+                 std::size_t dimension);
 
 // Values of each node in turn: d components of a vector, as many of H as its form has, one of the others.
 // Spins are empty if the form of H has none, v_smooth if this step is not given it.
@@ -43,12 +38,11 @@ struct Inputs {
   }
   void set_vector(std::vector<double>& of, std::size_t node, const Vector& value) const;
   bool spins() const { return form == ILAW_DELASSUS_TRANSVERSE_SPIN; }
-  Vector spin(const std::vector<double>& of, std::size_t node) const;  // 0 without spins
-  Matrix h(std::size_t node) const;                                    // in the axes of the vectors
-  Matrix j(std::size_t node) const;  // J and k of the form with spins, 0 without
-  double k(std::size_t node) const;
-  // H r + k n x m, and J m - k n x r.
-  Motion gained(std::size_t node, const Vector& r, const Vector& m) const;
+  Wrench free(std::size_t node) const { return wrench_of(v_free, spin_free, node, dimension); }
+  Wrench previous(std::size_t node) const { return wrench_of(v_previous, spin_previous, node, dimension); }
+  Matrix h(std::size_t node) const;  // in the axes of the vectors
+  // From (r, m) to (H r + k n x m, J m - k n x r), the last 0 without spins.
+  Eigen::Matrix<double, 6, 6> gain(std::size_t node) const;
   Vector normal_at(std::size_t node) const;
   // g of "out of reach", and whether the node is, by v_free and by v_smooth if given (ilaw.h).
   double slack(std::size_t node) const;
@@ -98,6 +92,8 @@ std::vector<Number> picked(const std::vector<Number>& values, const std::vector<
   return own;
 }
 
+// Axes are the columns of a matrix: a normal and its tangents.
+
 // The axes carried to another normal by the shortest rotation.
 Matrix carried(const Matrix& axes, const Vector& normal);
 // From local axes to axes of which each node has its own, with normals and tangents; the form of H becomes
@@ -105,7 +101,8 @@ Matrix carried(const Matrix& axes, const Vector& normal);
 Inputs turned(Inputs local, const std::vector<Matrix>& axes);
 // The same H in a form that holds it.
 Inputs in_form(Inputs given, const Setup& setup);
-// All vectors and H turned by one matrix whose rows are orthonormal.
+// All vectors and H turned by one matrix, or mirrored, which changes the sign of axial vectors.
 Inputs turned_as_a_whole(Inputs given, const Matrix& rotation);
+Wrench turned(const Matrix& rotation, const Wrench& wrench);
 
 }  // namespace ilaw::check

@@ -12,15 +12,8 @@
 namespace ilaw::check {
 namespace {
 
-// create refuses the values with ILAW_INVALID_PARAMETER, no instance and a message.
 void expect_refused(const Trial& trial, const Values& values) {
-  const std::string setting = joined(text_of(trial.setup), "; ", text_of(values));
-  Refusal refusal{};
-  if (create(trial.law, trial.setup, values, refusal))
-    throw Finding{"create accepted them", "ILAW_INVALID_PARAMETER", setting};
-  if (refusal.code != ILAW_INVALID_PARAMETER)
-    throw Finding{joined("create returned ", refusal.code, ": ", refusal.message),
-                  "ILAW_INVALID_PARAMETER (-2)", setting};
+  check::expect_refused(trial, values, ILAW_INVALID_PARAMETER);
 }
 
 Value number(const std::string& name, double value) { return {name, ILAW_KIND_VALUE_NUMBER, value}; }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/process.hpp"
 
-#include <dirent.h>
 #include <sched.h>
 #include <sys/personality.h>
 #include <sys/resource.h>
@@ -16,9 +15,9 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <exception>
+#include <filesystem>
+#include <iterator>
 #include <new>
 
 #if defined(__x86_64__)
@@ -28,6 +27,7 @@
 namespace ilaw::check {
 namespace {
 
+namespace fs = std::filesystem;
 using Settings = std::map<std::string, std::string>;
 
 std::string formatted(const char* format, std::uint64_t value) {
@@ -143,25 +143,18 @@ void add_environment(Settings& settings) {
   }
 }
 
-std::string target_of(const std::string& link) {
-  std::array<char, 4096> text{};
-  const ssize_t size = readlink(link.c_str(), text.data(), text.size() - 1);
-  return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : "unknown";
-}
-
+// A folder of /proc that is read has a descriptor, too.
 void add_files(Settings& settings) {
+  std::error_code none;
+  const auto target_of = [&](const fs::path& link) { return fs::read_symlink(link, none).string(); };
   settings["current directory"] = target_of("/proc/self/cwd");
   const mode_t mask = umask(0);
   umask(mask);
   settings["umask"] = octal(mask);
-  DIR* const folder = opendir("/proc/self/fd");
-  if (!folder) return;
-  while (const dirent* entry = readdir(folder)) {
-    const std::string name = entry->d_name;
-    if (name[0] != '.' && name != std::to_string(dirfd(folder)))
-      settings["descriptor " + name] = target_of("/proc/self/fd/" + name);
-  }
-  closedir(folder);
+  const std::string own = "/proc/" + std::to_string(getpid()) + "/fd";
+  for (const fs::path& file : fs::directory_iterator("/proc/self/fd", none))
+    if (const std::string target = target_of(file); target != own)
+      settings["descriptor " + file.filename().string()] = target;
 }
 
 std::string amount_of(rlim_t amount) {
@@ -188,12 +181,9 @@ void add_limits(Settings& settings) {
 }
 
 void add_threads(Settings& settings) {
-  std::size_t count = 0;
-  if (DIR* const folder = opendir("/proc/self/task")) {
-    while (const dirent* entry = readdir(folder)) count += entry->d_name[0] != '.';
-    closedir(folder);
-  }
-  settings["number of threads"] = std::to_string(count);
+  std::error_code none;
+  settings["number of threads"] =
+      std::to_string(std::distance(fs::directory_iterator("/proc/self/task", none), {}));
   cpu_set_t processors;
   CPU_ZERO(&processors);
   if (sched_getaffinity(0, sizeof processors, &processors) == 0)

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/progress.hpp"
 
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <cstdarg>
 #include <cstdio>
-#include <new>
 
 namespace ilaw::check {
 namespace {
@@ -19,7 +16,7 @@ double clock_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// One write each, so that lines of several processes do not mix.
+// One write each, so that lines do not mix.
 [[gnu::format(printf, 1, 2)]] void write_to_stderr(const char* format, ...) {
   std::array<char, 400> text{};
   va_list values;
@@ -44,15 +41,6 @@ std::string short_time(double seconds) {
 
 }  // namespace
 
-// In memory that forked processes share.
-struct Progress::Count {
-  std::atomic<double> done{0.0}, total{1.0}, next{0.0};
-  double start = clock_now(), first = 0.0;
-  std::atomic<bool> is_drawn{false};
-};
-
-void Progress::Unmap::operator()(Count* count) const { munmap(count, sizeof(Count)); }
-
 void add_progress(CLI::App& command, ProgressForm& form) {
   command.add_flag_callback(
       "--json-lines", [&form] { form = ProgressForm::json_lines; },
@@ -60,66 +48,62 @@ void add_progress(CLI::App& command, ProgressForm& form) {
 }
 
 Progress::Progress(std::string task, std::string unit, double total, ProgressForm form)
-    : task_(std::move(task)), unit_(std::move(unit)), form_(form) {
-  if (form == ProgressForm::none || (form == ProgressForm::line && isatty(STDERR_FILENO) != 1)) return;
-  void* shared = mmap(nullptr, sizeof(Count), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (shared == MAP_FAILED) return;
-  count_.reset(new (shared) Count);
-  count_->total = total;
-  count_->next = count_->start + 0.1;  // short work shows nothing
-}
+    : task_(std::move(task)),
+      unit_(std::move(unit)),
+      form_(form),
+      is_shown_(form == ProgressForm::json_lines ||
+                (form == ProgressForm::line && isatty(STDERR_FILENO) == 1)),
+      start_(clock_now()),
+      total_(total),
+      next_(start_ + 0.1) {}  // short work shows nothing
 
 Progress::~Progress() {
-  if (!count_) return;
+  if (!is_shown_) return;
   if (form_ == ProgressForm::json_lines) write_object(clock_now());
-  if (count_->is_drawn) write_to_stderr("\r\033[K");
+  if (is_drawn_) write_to_stderr("\r\033[K");
 }
 
 void Progress::add(double amount) {
-  if (!count_) return;
-  count_->done += amount;
+  if (!is_shown_) return;
+  done_ += amount;
   show_now_and_then();
 }
 
-void Progress::begin_at(double done) {
-  if (count_) count_->done = count_->first = done;
-}
+void Progress::begin_at(double done) { done_ = first_ = done; }
 
 void Progress::set(double done, double total) {
-  if (!count_) return;
-  count_->done = done;
-  count_->total = total;
+  if (!is_shown_) return;
+  done_ = done;
+  total_ = total;
   show_now_and_then();
 }
 
 void Progress::show_now_and_then() {
   const double now = clock_now(), between = form_ == ProgressForm::line ? 0.1 : 1.0;
-  double next = count_->next;
-  if (now < next || !count_->next.compare_exchange_strong(next, now + between)) return;
+  double next = next_;
+  if (now < next || !next_.compare_exchange_strong(next, now + between)) return;
   if (form_ == ProgressForm::json_lines) return write_object(now);
-  count_->is_drawn = true;
+  is_drawn_ = true;
   draw_line(now);
 }
 
-double Progress::part() const { return std::clamp(count_->done / count_->total, 0.0, 1.0); }
+double Progress::part() const { return std::clamp(done_ / total_, 0.0, 1.0); }
 
-double Progress::rate(double now) const {
-  return (count_->done - count_->first) / std::max(now - count_->start, 1e-9);
-}
+double Progress::rate(double now) const { return (done_ - first_) / std::max(now - start_, 1e-9); }
 
 void Progress::write_object(double now) const {
-  const double speed = rate(now), left = std::max(count_->total - count_->done, 0.0);
+  const double speed = rate(now), left = std::max(total_ - done_, 0.0);
   write_to_stderr(
       "{\"task\": \"%s\", \"unit\": \"%s\", \"done\": %.10g, \"total\": %.10g, \"percent\": %.1f, "
       "\"per_second\": %.4g, \"seconds\": %.3f, \"seconds_left\": %.3g}\n",
-      task_.c_str(), unit_.c_str(), count_->done.load(), count_->total.load(), 100.0 * part(), speed,
-      now - count_->start, speed > 0.0 ? left / speed : 0.0);
+      task_.c_str(), unit_.c_str(), done_.load(), total_.load(), 100.0 * part(), speed, now - start_,
+      speed > 0.0 ? left / speed : 0.0);
 }
 
 void Progress::draw_line(double now) const {
   constexpr std::size_t width = 30;
   const auto filled = static_cast<std::size_t>(part() * static_cast<double>(width));
-  const double speed = rate(now), left = std::max(count_->total - count_->done, 0.0);
+  const double speed = rate(now), left = std::max(total_ - done_, 0.0);
   write_to_stderr(speed < 1e3 ? "\r\033[K%s [%s%s] %3.0f %%  %.3g %s/s  %s left "
                               : "\r\033[K%s [%s%s] %3.0f %%  %.0f %s/s  %s left ",
                   task_.c_str(), std::string(filled, '#').c_str(), std::string(width - filled, '.').c_str(),

@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <memory>
+#include <atomic>
 #include <string>
 
 namespace ilaw::check {
@@ -15,8 +15,8 @@ enum class ProgressForm { none, line, json_lines };
 // Adds --json-lines to a command.
 void add_progress(CLI::App& command, ProgressForm& form);
 
-// Counts work against its total, and shows on stderr the percentage, the rate and the time left. Threads, and
-// processes that are forked later, may count in it at the same time.
+// Counts work against its total, and shows on stderr the percentage, the rate and the time left. Threads may
+// count in it at the same time.
 class Progress {
  public:
   Progress(std::string task, std::string unit, double total, ProgressForm form);
@@ -29,10 +29,6 @@ class Progress {
   void set(double done, double total);  // if the total is an estimate that changes
 
  private:
-  struct Count;
-  struct Unmap {
-    void operator()(Count* count) const;
-  };
   void show_now_and_then();
   void write_object(double now) const;
   void draw_line(double now) const;
@@ -41,7 +37,10 @@ class Progress {
 
   std::string task_, unit_;
   ProgressForm form_;
-  std::unique_ptr<Count, Unmap> count_;  // none: nothing is shown
+  bool is_shown_;
+  double start_, first_ = 0.0;
+  std::atomic<double> done_{0.0}, total_, next_;
+  std::atomic<bool> is_drawn_{false};
 };
 
 }  // namespace ilaw::check

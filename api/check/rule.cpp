@@ -90,4 +90,22 @@ Trial any_trial(const Subject& subject) {
   throw NotJudged{"the law accepted no parameters"};
 }
 
+void expect_refused(const Trial& trial, const Values& values, ilaw_result code, const std::string& what,
+                    const std::function<void(SetupStruct& given)>& spoil) {
+  SetupStruct given(trial.setup, values);
+  if (spoil) spoil(given);
+  const std::string setting = joined(text_of(trial.setup), "; ", text_of(values)),
+                    allowed = joined(code == ILAW_INVALID_PARAMETER  ? "ILAW_INVALID_PARAMETER ("
+                                     : code == ILAW_INVALID_ARGUMENT ? "ILAW_INVALID_ARGUMENT ("
+                                                                     : "ILAW_UNSUPPORTED (",
+                                     code, ")");
+  set_setting(setting);
+  Refusal refusal{};
+  if (create(trial.law, given.given, refusal))
+    throw Finding{joined("create accepted ", what), allowed, setting};
+  if (refusal.code != code)
+    throw Finding{joined("create refused ", what, " with code ", refusal.code, ": ", refusal.message),
+                  allowed, setting};
+}
+
 }  // namespace ilaw::check

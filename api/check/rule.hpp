@@ -87,4 +87,10 @@ std::optional<Values> values_of(const Subject& subject, const Setup& setup, Draw
 // Some parameters that the law accepts, in the first setup that it serves.
 Trial any_trial(const Subject& subject);
 
+// Throws the finding where create does not refuse these values with the code. what, spoil: a mistake in their
+// setup, as a finding names it.
+void expect_refused(const Trial& trial, const Values& values, ilaw_result code,
+                    const std::string& what = "them",
+                    const std::function<void(SetupStruct& given)>& spoil = {});
+
 }  // namespace ilaw::check

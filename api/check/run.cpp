@@ -5,10 +5,7 @@
 #include "check/sandbox.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <iterator>
 #include <map>
 
@@ -36,10 +33,6 @@ std::string text_of(const Vector& a, std::size_t dimension) {
   std::string text = "(";
   for (std::size_t c = 0; c < dimension; ++c) text += (c ? ", " : "") + text_of(a[c]);
   return text + ")";
-}
-
-Vector Results::moment_at(std::size_t node) const {
-  return moment.empty() ? Vector{} : vector_of(moment, node, 3);
 }
 
 std::vector<Results::Numbers> Results::numbers() const {
@@ -93,7 +86,10 @@ void Arrays::make_list() {
 }
 
 Field Arrays::made(const char* name, std::size_t width, Use use, ilaw_number_type numbers) {
-  return Field(memory_, name, width, room_, layout_.order, use, numbers, made_++ % 3);
+  const Order order = name == output_arrays[state_place].name
+                          ? layout_.order_of_state_out.value_or(layout_.order)
+                          : layout_.order;
+  return Field(memory_, name, width, room_, order, use, numbers, made_++ % 3);
 }
 
 void Arrays::make_inputs(const Inputs& first) {
@@ -231,14 +227,6 @@ std::vector<double> Arrays::take(const Field& field) const {
 }
 
 std::vector<double> Arrays::state() { return take(state_out()); }
-
-std::vector<double> Arrays::written() {
-  std::vector<double> all;
-  for_outputs([&](const Field& field) {
-    for (const double value : take(field)) all.push_back(value);
-  });
-  return all;
-}
 
 Results Arrays::results(std::int32_t code) {
   Results results{places_.size(), code, report_};

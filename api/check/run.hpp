@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "check/field.hpp"
 #include "check/memory.hpp"
 #include "check/script.hpp"
 
@@ -23,6 +22,7 @@ inline constexpr std::uint32_t all_outputs =
 
 struct Layout {
   Order order = Order::interleaved;
+  std::optional<Order> order_of_state_out{};
   List list = List::none;
   std::int32_t index_base = 0;
   std::size_t spare = 0;  // nodes of the arrays that are on no list
@@ -50,11 +50,8 @@ struct Results {
     std::uint32_t asked;
   };
   std::vector<Numbers> numbers() const;
-  Vector moment_at(std::size_t node) const;  // 0 without spins
   Results of_nodes(const std::vector<std::size_t>& which) const;
-  Vector vector(const std::vector<double>& of, std::size_t node, std::size_t dimension) const {
-    return vector_of(of, node, dimension);
-  }
+  Wrench action(std::size_t node) const { return wrench_of(impulse, moment, node, impulse.size() / nodes); }
 };
 
 // The arrays of a batch that results are written to, but for amounts; asked: by which bit of the outputs.
@@ -85,7 +82,7 @@ class Arrays {
   Results evaluate_with(const Instance& instance, const Inputs& in);
   void set_state(const std::vector<double>& state);  // of each node in turn
   std::vector<double> state();
-  std::vector<double> written();  // all outputs, one after another
+  Results results(std::int32_t code = ILAW_OK);  // as the outputs are now
   // The output that the last evaluate wrote outside the nodes of the batch; null where there is none.
   const char* written_beside();
   ilaw_batch& batch() { return batch_; }
@@ -102,7 +99,6 @@ class Arrays {
   template <class Visit>
   void for_outputs(Visit visit);
   std::vector<double> take(const Field& field) const;
-  Results results(std::int32_t code);
   std::size_t node(std::size_t k) const { return layout_.nodes[k]; }
   Field& state_out() { return outputs_[state_place]; }
   std::size_t status_size() const { return (room_ - 1) * status_stride_ + 1; }

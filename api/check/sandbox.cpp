@@ -58,16 +58,14 @@ Shared* shared = nullptr;
 DescribeAddress describe_address = nullptr;
 
 // Cuts what is too long; for a signal handler too.
-template <std::size_t N>
-void append(std::array<char, N>& room, const char* text) {
-  std::size_t at = std::strlen(room.data());
-  for (; *text != '\0' && at + 1 < N; ++at) room[at] = *text++;
+template <std::size_t N, class... Texts>
+void put(std::array<char, N>& room, Texts... texts) {
+  std::size_t at = 0;
+  const auto append = [&](const char* text) {
+    while (*text != '\0' && at + 1 < N) room[at++] = *text++;
+  };
+  (append(texts), ...);
   room[at] = '\0';
-}
-template <std::size_t N>
-void put(std::array<char, N>& room, const char* text) {
-  room[0] = '\0';
-  append(room, text);
 }
 
 // The library may have written over the zero at its end.
@@ -86,20 +84,16 @@ bool was_write(const void* context) {
 }
 
 void on_signal(int number, siginfo_t* info, void* context) {
-  const char* name = sigabbrev_np(number);
-  put(shared->what, "was ended by SIG");
-  append(shared->what, name ? name : "?");
+  const char *name = sigabbrev_np(number), *access = "", *place = "";
+  std::array<char, 40> call{};
   if (number == SIGSEGV || number == SIGBUS) {
-    const bool written = was_write(context);
-    append(shared->what, written ? ", writing " : ", reading ");
-    const char* place = describe_address ? describe_address(info->si_addr) : nullptr;
-    append(shared->what, place ? place : "where nothing of the batch is");
+    access = was_write(context) ? ", writing " : ", reading ";
+    place = describe_address ? describe_address(info->si_addr) : nullptr;
+    if (!place) place = "where nothing of the batch is";
   }
-  if (number == SIGSYS) {
-    std::array<char, 40> text{};
-    std::snprintf(text.data(), text.size(), ", making the system call %d", info->si_syscall);
-    append(shared->what, text.data());
-  }
+  if (number == SIGSYS)
+    std::snprintf(call.data(), call.size(), ", making the system call %d", info->si_syscall);
+  put(shared->what, "was ended by SIG", name ? name : "?", access, place, call.data());
   _exit(1);
 }
 
@@ -125,10 +119,7 @@ void limit(int resource, rlim_t amount) {
 
 std::size_t bytes_of_address_space() {
   std::size_t pages = 0;
-  if (FILE* file = std::fopen("/proc/self/statm", "r")) {
-    if (std::fscanf(file, "%zu", &pages) != 1) pages = 0;
-    std::fclose(file);
-  }
+  std::ifstream("/proc/self/statm") >> pages;
   return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
@@ -305,8 +296,7 @@ void set_setting(const std::string& text) {
 }
 
 void end_here(const char* what, const char* name) {
-  put(shared->what, what);
-  append(shared->what, name);
+  put(shared->what, what, name);
   _exit(1);
 }
 

@@ -10,11 +10,6 @@
 namespace ilaw::check {
 namespace {
 
-Vector unit(const Vector& a) {
-  const double size = length(a);
-  return {a[0] / size, a[1] / size, a[2] / size};
-}
-
 // Positive definite: a diagonal with couplings smaller than its least entry over two.
 void draw_delassus(Inputs& in, std::size_t node, bool isotropic, Draw& draw) {
   double* values = &in.delassus[node * in.form_width];
@@ -95,8 +90,8 @@ void draw_fixed(Inputs& in, const Trial& trial, Draw& draw) {
     in.area[i] = draw.within(0.5, 2.0);
     in.gap_offset[i] = has_offset ? draw.within(-1e-2, 1e-2) : 0.0;
     const Matrix axes = draw_axes(in.dimension, draw);
-    if (!in.normal.empty()) in.set_vector(in.normal, i, axes[0]);
-    if (!in.tangent.empty()) in.set_vector(in.tangent, i, axes[1]);
+    if (!in.normal.empty()) in.set_vector(in.normal, i, axes.col(0));
+    if (!in.tangent.empty()) in.set_vector(in.tangent, i, axes.col(1));
   }
   if (trial.info.per_node_parameter_count == 0) return;
   constexpr std::size_t most_drawn = 32;  // each is an instance made; further nodes have them again
@@ -110,15 +105,18 @@ void draw_fixed(Inputs& in, const Trial& trial, Draw& draw) {
 void turn_axes(Inputs& in, Draw& draw) {
   for (std::size_t i = 0; !in.normal.empty() && i < in.count; ++i) {
     const Vector turned = draw_turned(in.normal_at(i), in.dimension, draw);
-    if (!in.tangent.empty())
-      in.set_vector(in.tangent, i, carried({in.normal_at(i), in.vector(in.tangent, i), Vector{}}, turned)[1]);
+    if (!in.tangent.empty()) {
+      Matrix axes;
+      axes << in.normal_at(i), in.vector(in.tangent, i), Vector::Zero();
+      in.set_vector(in.tangent, i, carried(axes, turned).col(1));
+    }
     in.set_vector(in.normal, i, turned);
   }
 }
 
 void draw_spin(Inputs& in, std::size_t node, double part, bool without_force, Draw& draw) {
   const Vector last = in.vector(in.spin_free, node);
-  Vector w{}, before{};
+  Vector w = Vector::Zero(), before = w;
   for (std::size_t c = 0; c < in.dimension; ++c) {
     w[c] = part != 0.0 ? part * last[c] : draw.within(-1.0, 1.0);
     before[c] = without_force ? w[c] : draw.within(-1.0, 1.0);
@@ -132,7 +130,7 @@ void draw_motion(Inputs& in, bool isotropic, bool without_force, bool is_path, D
   for (std::size_t i = 0; i < in.count; ++i) {
     const Vector n = in.normal_at(i), last = in.vector(in.v_free, i);
     const double part = !is_path || draw.one_in(4) ? 0.0 : draw.one_in(3) ? -1.0 : 1.0;
-    Vector v{}, before{};
+    Vector v = Vector::Zero(), before = v;
     for (std::size_t c = 0; c < in.dimension; ++c) {
       v[c] = part != 0.0 ? part * last[c] : draw.within(-1.0, 1.0) - 0.2 * n[c];
       before[c] = without_force ? v[c] : draw.within(-1.0, 1.0);
@@ -184,25 +182,23 @@ Vector draw_turned(const Vector& normal, std::size_t dimension, Draw& draw) {
   if (dimension == 1) return normal;
   Vector turned = normal;
   for (std::size_t c = 0; c < dimension; ++c) turned[c] += draw.within(-0.4, 0.4);
-  return unit(turned);
+  return turned.normalized();
 }
 
 Matrix draw_axes(std::size_t dimension, Draw& draw) {
-  if (dimension == 1)
-    return {Vector{draw.one_in(2) ? 1.0 : -1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  if (dimension == 1) return Vector{draw.one_in(2) ? 1.0 : -1.0, 1.0, 1.0}.asDiagonal();
+  Matrix axes = Matrix::Identity();
   if (dimension == 2) {
-    const double angle = draw.within(-3.1, 3.1), c = std::cos(angle), s = std::sin(angle);
-    return {Vector{c, s, 0.0}, {-s, c, 0.0}, {0.0, 0.0, 1.0}};
+    axes.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(draw.within(-3.1, 3.1)).toRotationMatrix();
+    return axes;
   }
   const auto one = [&] { return draw.within(-1.0, 1.0); };
-  const Vector n = unit({one() + 1e-3, one(), one()});
+  const Vector n = Vector{one() + 1e-3, one(), one()}.normalized();
   Vector t = std::abs(n[0]) < 0.7 ? Vector{1.0, one(), one()} : Vector{one(), 1.0, one()};
-  for (int pass = 0; pass < 2; ++pass) {  // the second takes off what the first left by rounding
-    const double along = dot(n, t);
-    for (std::size_t c = 0; c < 3; ++c) t[c] -= along * n[c];
-    t = unit(t);
-  }
-  return {n, t, Vector{n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]}};
+  for (int pass = 0; pass < 2; ++pass)  // the second takes off what the first left by rounding
+    t = (t - n.dot(t) * n).normalized();
+  axes << n, t, n.cross(t);
+  return axes;
 }
 
 Script draw_script(const Trial& trial, Draw& draw, const ScriptSize& size, bool isotropic) {

@@ -38,7 +38,7 @@ Values constants_of(const Trial& trial, const Inputs& in, std::size_t node);
 // A normal at an angle of at most half a right angle to this one.
 Vector draw_turned(const Vector& normal, std::size_t dimension, Draw& draw);
 
-// Axes of a node: rows are normal and tangents, right-handed.
+// Axes of a node, right-handed but in 1D.
 Matrix draw_axes(std::size_t dimension, Draw& draw);
 
 }  // namespace ilaw::check

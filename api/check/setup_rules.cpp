@@ -11,32 +11,25 @@
 namespace ilaw::check {
 namespace {
 
-// create refuses the setup of a trial with a change.
-template <class Change>
-void expect_unserved(const Trial& trial, const std::string& what, Change change) {
-  const SetupStruct given(trial.setup, trial.values);
-  ilaw_setup setup = given.given;
-  change(setup);
-  set_setting(joined(what, "; ", text_of(trial.values)));
-  Refusal refusal{};
-  if (create(trial.law, setup, refusal)) fail(trial, joined("create accepted ", what), "a refusal");
-  if (refusal.code != ILAW_UNSUPPORTED)
-    fail(trial, joined("create refused ", what, " with code ", refusal.code), "ILAW_UNSUPPORTED (-3)");
-}
-
 bool is_single(std::uint32_t mask) { return mask != 0 && (mask & (mask - 1)) == 0; }
+
+// Each value of a member of the setup that the law does not serve.
+template <class Member, class Value>
+void expect_unserved(const Trial& trial, const char* what, Member ilaw_setup::*member, Value value) {
+  expect_refused(trial, trial.values, ILAW_UNSUPPORTED, joined(what, value),
+                 [=](SetupStruct& setup) { setup.given.*member = value; });
+}
 
 void setup_unserved(const Subject& subject) {
   const Trial trial = any_trial(subject);
   for (std::uint32_t d = 0; d <= 5; ++d) {
     const bool has_form = d == 3 || !trial.setup.spins();
     if (!has_form || d < 1 || d > 3 || !(subject.law.dimensions & (1U << d)))
-      expect_unserved(trial, joined("dimension ", d), [d](ilaw_setup& setup) { setup.dimension = d; });
+      expect_unserved(trial, "dimension ", &ilaw_setup::dimension, d);
   }
   for (const std::uint32_t form : {0U, 1U, 2U, 3U, 4U, 8U, 16U})
     if (!is_single(form) || !(subject.law.delassus_forms & form))
-      expect_unserved(trial, joined("form ", form, " of H"),
-                      [form](ilaw_setup& setup) { setup.delassus_form = form; });
+      expect_unserved(trial, "H of form ", &ilaw_setup::delassus_form, form);
 }
 
 // Each exactly one entry of the law's mask: none, several and unknown ones are refused.
@@ -45,16 +38,14 @@ Judge refuses_choices(const char* what, std::uint32_t ilaw_setup::*member, std::
             const Trial trial = any_trial(subject);
             for (const std::uint32_t choice : {0U, 1U, 2U, 3U, 4U, 7U, 1U << 31})
               if (!is_single(choice) || !(choice & subject.law.*served & 3U))
-                expect_unserved(trial, joined(what, " ", choice),
-                                [=](ilaw_setup& setup) { setup.*member = choice; });
+                expect_unserved(trial, what, member, choice);
           }};
 }
 
 void setup_flags(const Subject& subject) {
   const Trial trial = any_trial(subject);
   for (const int bit : {0, 31, 63})
-    expect_unserved(trial, joined("bit ", bit, " of flags"),
-                    [bit](ilaw_setup& setup) { setup.flags = std::uint64_t{1} << bit; });
+    expect_unserved(trial, "flags ", &ilaw_setup::flags, std::uint64_t{1} << bit);
 }
 
 void create_id(const Subject& subject) {
@@ -73,43 +64,31 @@ void create_id(const Subject& subject) {
   }
 }
 
-std::int32_t code_of(const Trial& trial, const ilaw_setup* setup) {
-  ilaw_instance* made = nullptr;
-  calling("create");
-  const std::int32_t code = trial.law.create(trial.law.id, setup, &made, nullptr, 0);
-  if (made) trial.law.destroy(made);
-  return code;
-}
-
 void sizes_short(const Subject& subject) {
   const Trial trial = any_trial(subject);
-  const auto expect = [&](std::int32_t code, const std::string& what) {
+  const auto expect_code = [&](std::int32_t code, const char* what) {
     if (code != ILAW_INVALID_ARGUMENT)
       fail(trial, joined(what, " returned ", code, " for a struct smaller than that of version 1.0"),
            "ILAW_INVALID_ARGUMENT (-1)");
   };
-  SetupStruct given(trial.setup, trial.values);
-  for (const std::uint32_t size : {0U, static_cast<std::uint32_t>(ILAW_SETUP_SIZE_1_0) - 1}) {
-    ilaw_setup setup = given.given;
-    setup.struct_size = size;
-    expect(code_of(trial, &setup), "create");
-  }
-  for (ilaw_argument& argument : given.arguments) {
-    argument.struct_size = static_cast<std::uint32_t>(ILAW_ARGUMENT_SIZE_1_0) - 1;
-    expect(code_of(trial, &given.given), "create, given a short argument,");
-    argument.struct_size = sizeof argument;
-  }
+  for (const std::uint32_t size : {0U, static_cast<std::uint32_t>(ILAW_SETUP_SIZE_1_0) - 1})
+    expect_refused(trial, trial.values, ILAW_INVALID_ARGUMENT, joined("a setup of ", size, " bytes"),
+                   [size](SetupStruct& setup) { setup.given.struct_size = size; });
+  for (std::size_t k = 0; k < trial.values.size(); ++k)
+    expect_refused(trial, trial.values, ILAW_INVALID_ARGUMENT, "a short argument", [k](SetupStruct& setup) {
+      setup.arguments[k].struct_size = static_cast<std::uint32_t>(ILAW_ARGUMENT_SIZE_1_0) - 1;
+    });
   ilaw_instance_info info{};
   info.struct_size = static_cast<std::uint32_t>(ILAW_INSTANCE_INFO_SIZE_1_0) - 1;
   calling("info");
-  expect(trial.law.info(trial.instance.get(), &info), "info");
+  expect_code(trial.law.info(trial.instance.get(), &info), "info");
   Draw draw(subject.seed);
   const Script script = draw_script(trial, draw, {2, 1});
   Started arrays(trial, script[0]);
   ilaw_batch batch = arrays.batch();
   batch.struct_size = static_cast<std::uint32_t>(ILAW_BATCH_SIZE_1_0) - 1;
-  expect(trial.instance.evaluate(batch, nullptr), "evaluate");
-  expect(trial.instance.initialise(batch, nullptr), "initialise");
+  expect_code(trial.instance.evaluate(batch, nullptr), "evaluate");
+  expect_code(trial.instance.initialise(batch, nullptr), "initialise");
 }
 
 // A struct with what a later minor version would append.
@@ -133,8 +112,9 @@ void sizes_long(const Subject& subject) {
     const SetupStruct given(trial.setup, trial.values);
     Longer<ilaw_setup> setup(given.given);
     const Script script = draw_script(trial, draw, {3, 1});
-    if (const std::int32_t code = code_of(trial, &setup.known); code != ILAW_OK)
-      fail(trial, joined("create returned ", code, " for a longer setup"), "ILAW_OK");
+    Refusal refusal{};
+    if (!create(trial.law, setup.known, refusal))
+      fail(trial, joined("create returned ", refusal.code, " for a longer setup"), "ILAW_OK");
     Longer<ilaw_instance_info> info(ilaw_instance_info{});
     calling("info");
     if (trial.law.info(trial.instance.get(), &info.known) != ILAW_OK || !(knows_more || info.is_untouched()))
@@ -211,9 +191,9 @@ std::vector<Rule> setup_rules() {
        "A dimension or form of H that the law does not serve is refused, spins in 1D and 2D among them.",
        "ilaw.h, ilaw_setup", needing(Needs::instance, setup_unserved)},
       {"setup-frame", "A frame that is not exactly one entry of the law's mask is refused.",
-       "ilaw.h, ilaw_setup", refuses_choices("frame", &ilaw_setup::frame, &ilaw_law::frames)},
+       "ilaw.h, ilaw_setup", refuses_choices("frame ", &ilaw_setup::frame, &ilaw_law::frames)},
       {"setup-numbers", "A number type that is not exactly one entry of the law's mask is refused.",
-       "ilaw.h, ilaw_setup", refuses_choices("number type", &ilaw_setup::numbers, &ilaw_law::numbers)},
+       "ilaw.h, ilaw_setup", refuses_choices("number type ", &ilaw_setup::numbers, &ilaw_law::numbers)},
       {"create-id", "create makes no instance of a law that the library does not have.",
        "ilaw.h, ilaw_law.create", needing(Needs::instance, create_id)},
       {"setup-flags", "A bit of the setup's flags that the law does not know is refused.", "ilaw.h, Growth",

@@ -17,7 +17,7 @@ Inputs Shake::operator()(Inputs in) {
   for (std::size_t i = 0; i < in.count; ++i) {
     for (std::vector<double>* vectors : {&in.v_free, &in.v_smooth, &in.spin_free}) {
       if (vectors->empty()) continue;
-      const double size_of_vector = length(in.vector(*vectors, i));
+      const double size_of_vector = in.vector(*vectors, i).norm();
       for (std::size_t c = 0; c < in.dimension; ++c)
         (*vectors)[i * in.dimension + c] += rounding_of(size_of_vector);
     }

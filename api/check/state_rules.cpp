@@ -23,7 +23,7 @@ double draw_closing(const Inputs& in, std::size_t node, Draw& draw) {
 }
 
 Vector along_normal(const Inputs& in, const Vector& n, double speed) {
-  Vector v{};
+  Vector v = Vector::Zero();
   for (std::size_t c = 0; c < in.dimension; ++c) v[c] = in.normal.empty() && c > 0 ? 0.25 : speed * n[c];
   return v;
 }
@@ -40,7 +40,7 @@ void draw_borderline(Inputs& in, Draw& draw) {
       if (draw.one_in(3)) along = 1.0;
     }
     in.set_vector(in.v_free, i, along_normal(in, n, along));
-    in.set_vector(in.v_previous, i, scaled(-3.0, n));
+    in.set_vector(in.v_previous, i, -3.0 * n);
   }
 }
 
@@ -129,7 +129,7 @@ void expect_contained(const Trial& trial, const Inputs& in, Arrays& arrays, cons
   for (std::size_t c = 0; c < d; ++c)
     if (!std::isfinite(found.impulse[node * d + c]))
       say(node, "an impulse that is not finite", "a finite impulse");
-  const Vector m = found.moment_at(node);
+  const Vector m = found.action(node).tail<3>();
   for (const double component : m)
     if (!std::isfinite(component)) say(node, "a moment that is not finite", "a finite moment");
   const bool refused = found.code == ILAW_BAD_NODES;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 namespace ilaw::check {
@@ -16,31 +15,21 @@ namespace {
 double tolerance(const Trial& trial) { return trial.setup.floats() ? 1e-4 : 1e-9; }
 
 double natural_impulse(const Inputs& in, std::size_t i) {
-  const double speed = length(in.vector(in.v_free, i)) + length(in.spin(in.spin_free, i));
+  const Wrench free = in.free(i);
+  const double speed = free.head<3>().norm() + free.tail<3>().norm();
   return speed / in.delassus[i * in.form_width] + 1e-3;
 }
 
-// Impulse and moment of a node.
-struct Action {
-  Vector impulse, moment;
-};
-Action action_at(const Inputs& in, const Results& found, std::size_t i) {
-  return {found.vector(found.impulse, i, in.dimension), found.moment_at(i)};
-}
-
 // Arms are of order one, so that moments and impulses have one size.
-bool are_alike(const Trial& trial, const Inputs& in, std::size_t i, const Action& a, const Action& b) {
-  const double most = tolerance(trial) * (length(a.impulse) + length(a.moment) + natural_impulse(in, i));
-  for (std::size_t c = 0; c < in.dimension; ++c)
-    if (!(std::abs(a.impulse[c] - b.impulse[c]) <= most && std::abs(a.moment[c] - b.moment[c]) <= most))
-      return false;
-  return true;
+bool are_alike(const Trial& trial, const Inputs& in, std::size_t i, const Wrench& a, const Wrench& b) {
+  const double most = tolerance(trial) * (a.head<3>().norm() + a.tail<3>().norm() + natural_impulse(in, i));
+  return ((a - b).array().abs() <= most).all();
 }
 
 [[noreturn]] void fail_image(const Trial& trial, const Inputs& in, std::size_t i, const std::string& how,
-                             const Action& expected, const Action& found) {
-  const auto text = [&](const Action& a) {
-    return text_of(a.impulse, in.dimension) + (in.spins() ? ", moment " + text_of(a.moment, 3) : "");
+                             const Wrench& expected, const Wrench& found) {
+  const auto text = [&](const Wrench& a) {
+    return text_of(a.head<3>(), in.dimension) + (in.spins() ? ", moment " + text_of(a.tail<3>(), 3) : "");
   };
   fail(trial, in, i, joined(how, ": impulse ", text(found), ", brought back"), text(expected));
 }
@@ -56,7 +45,7 @@ void leave_out_edges(const Trial& trial, const Inputs& in, const Results& plain,
                      std::vector<bool>& is_judged) {
   for (std::size_t i = 0; i < in.count; ++i) {
     if (!shaken.status.empty() && shaken.status[i] == ILAW_BAD_INPUT) continue;
-    is_judged[i] = is_judged[i] && are_alike(trial, in, i, action_at(in, plain, i), action_at(in, shaken, i));
+    is_judged[i] = is_judged[i] && are_alike(trial, in, i, plain.action(i), shaken.action(i));
   }
 }
 
@@ -74,8 +63,7 @@ void expect_image(const Trial& trial, const Script& script, const std::vector<Re
                   const std::vector<Results>& image, const char* how, Back back) {
   for (std::size_t k = 0; k < script.size(); ++k)
     for (std::size_t i = 0; i < script[k].count; ++i) {
-      const Action expected = action_at(script[k], plain[k], i),
-                   found = back(i, action_at(script[k], image[k], i));
+      const Wrench expected = plain[k].action(i), found = back(image[k].action(i));
       if (!are_alike(trial, script[k], i, expected, found))
         fail_image(trial, script[k], i, joined(how, ", step ", k), expected, found);
     }
@@ -100,14 +88,13 @@ void expect_steps_alike(const Trial& trial, const Script& script, const Trial& o
       leave_out_edges(trial, in, plain, shaken.evaluate(shake(in)), is_judged);
     }
     for (std::size_t i = 0; i < in.count; ++i) {
-      const Action expected = action_at(in, plain, i), found = back(i, action_at(in, image, i));
+      const Wrench expected = plain.action(i), found = back(i, image.action(i));
       if (is_judged[i] && !is_rounded_away(other, image, i) && !are_alike(other, in, i, expected, found))
         fail_image(other, in, i, how + ", step " + std::to_string(k), expected, found);
     }
   }
 }
 std::vector<double> the_same(std::vector<double> state) { return state; }
-Action turned(const Matrix& by, const Action& a) { return {times(by, a.impulse), times(by, a.moment)}; }
 
 // A scalar H is diagonal, transverse and full, a diagonal and a transverse one are full. Spins have one form.
 bool form_agreement(const Trial& trial, Draw& draw) {
@@ -123,7 +110,7 @@ bool form_agreement(const Trial& trial, Draw& draw) {
     if (other.info.state_size != trial.info.state_size) continue;
     const Script other_script = each_of(script, [&](const Inputs& in) { return in_form(in, setup); });
     expect_steps_alike(trial, script, other, other_script, "with the same H in form " + std::to_string(form),
-                       the_same, [](std::size_t, const Action& a) { return a; });
+                       the_same, [](std::size_t, const Wrench& a) { return a; });
     judged = true;
   }
   return judged;
@@ -167,7 +154,7 @@ bool expect_indifferent(const Trial& trial, const Setup& host, const Script& scr
     return in_axes;
   });
   expect_steps_alike(trial, script, in_host, host_script, "in axes of the host", the_same,
-                     [&](std::size_t i, const Action& a) { return turned(axes[i], a); });
+                     [&](std::size_t i, const Wrench& a) { return turned(axes[i].transpose(), a); });
   return true;
 }
 
@@ -200,7 +187,7 @@ void expect_carried(const Trial& trial, const Trial& in_host, Draw& draw) {
   axes[0] = draw_axes_of(script, draw);
   for (std::size_t k = 1; k < script.size(); ++k)
     for (std::size_t i = 0; i < count; ++i)
-      axes[k].push_back(carried(axes[k - 1][i], draw_turned(axes[k - 1][i][0], d, draw)));
+      axes[k].push_back(carried(axes[k - 1][i], draw_turned(axes[k - 1][i].col(0), d, draw)));
   const std::vector<std::vector<Matrix>> still(script.size(), axes[0]);
   const std::vector<Results> plain = run(trial, script),
                              unturned = run(in_host, in_axes(script, still, in_host.setup)),
@@ -213,9 +200,9 @@ void expect_carried(const Trial& trial, const Trial& in_host, Draw& draw) {
       leave_out_edges(in_host, script[k], plain[k], of[k], is_judged);
     for (std::size_t i = 0; i < count; ++i) {
       const auto local = [&](const std::vector<Results>& of, const Matrix& by) {
-        return turned(by, action_at(script[k], of[k], i));
+        return turned(by.transpose(), of[k].action(i));
       };
-      const Action r = action_at(script[k], plain[k], i), image = local(found, axes[k][i]);
+      const Wrench r = plain[k].action(i), image = local(found, axes[k][i]);
       is_judged[i] = is_judged[i] && are_alike(in_host, script[k], i, r, local(unturned, axes[0][i]));
       // A refused node keeps its state bit for bit: that step has not carried it.
       if (!found[k].status.empty() && found[k].status[i] == ILAW_BAD_INPUT) is_judged[i] = false;
@@ -241,9 +228,10 @@ std::vector<double> turned_state(const Trial& trial, std::vector<double> state, 
     for (std::size_t k = 0, at = first; k < trial.info.state_variable_count; ++k) {
       const ilaw_state_variable& variable = *trial.info.state_variables[k];
       if (variable.kind == ILAW_KIND_AXIS) {
-        Vector axis{};
+        Vector axis = Vector::Zero();
         std::copy_n(&state[at], d, axis.begin());
-        std::copy_n(times(rotation, axis).begin(), d, &state[at]);
+        axis = rotation * axis;
+        std::copy_n(axis.begin(), d, &state[at]);
       }
       at += variable.count;
     }
@@ -259,35 +247,20 @@ bool turned_whole(const Trial& trial, Draw& draw) {
   expect_steps_alike(
       trial, script, trial, other, "with the whole model turned",
       [&](std::vector<double> state) { return turned_state(trial, std::move(state), rotation); },
-      [&](std::size_t, const Action& a) { return turned(transposed(rotation), a); });
+      [&](std::size_t, const Wrench& a) { return turned(rotation.transpose(), a); });
   return true;
 }
 
+// The same motion turned about the normal, or mirrored, with the same parameters.
+void expect_turned(const Trial& trial, const Script& script, const Matrix& by, const char* how) {
+  const Script other = each_of(script, [&](const Inputs& in) { return turned_as_a_whole(in, by); });
+  expect_image(trial, script, run(trial, script), run(trial, other), how,
+               [&](const Wrench& a) { return turned(by.transpose(), a); });
+}
+
 bool mirror(const Trial& trial, Draw& draw) {
-  const Setup& own = trial.setup;
-  if (own.global() || own.dimension == 1) return false;
-  const Script script = draw_script(trial, draw);
-  Script other = script;
-  for (Inputs& in : other)
-    for (std::size_t i = 0; i < in.count; ++i) {
-      in.v_free[i * in.dimension + 1] *= -1.0;
-      in.v_previous[i * in.dimension + 1] *= -1.0;
-      if (!in.v_smooth.empty()) in.v_smooth[i * in.dimension + 1] *= -1.0;
-      if (own.spins())  // of an axial vector the components in the mirror change their sign
-        for (const std::size_t c : {0U, 2U}) {
-          in.spin_free[i * in.dimension + c] *= -1.0;
-          in.spin_previous[i * in.dimension + c] *= -1.0;
-        }
-      if (own.form != ILAW_DELASSUS_FULL) continue;
-      double* couplings = &in.delassus[i * in.form_width + in.dimension];
-      couplings[0] *= -1.0;                         // 01
-      if (in.dimension == 3) couplings[2] *= -1.0;  // 12
-    }
-  expect_image(trial, script, run(trial, script), run(trial, other), "in a mirror",
-               [](std::size_t, const Action& a) {
-                 const auto& [r, m] = a;
-                 return Action{{r[0], -r[1], r[2]}, {-m[0], m[1], -m[2]}};
-               });
+  if (trial.setup.global() || trial.setup.dimension == 1) return false;
+  expect_turned(trial, draw_script(trial, draw), Vector{1.0, -1.0, 1.0}.asDiagonal(), "in a mirror");
   return true;
 }
 
@@ -298,13 +271,9 @@ bool isotropy(const Trial& trial, Draw& draw) {
   if (own.form == ILAW_DELASSUS_DIAGONAL || own.form == ILAW_DELASSUS_FULL) return false;
   const Setup host = host_of(own, false);
   if (!create(trial.law, host, trial.values)) return false;
-  const double angle = draw.within(0.2, 1.3), c = std::cos(angle), s = std::sin(angle);
-  const Matrix spin{Vector{1.0, 0.0, 0.0}, {0.0, c, s}, {0.0, -s, c}},
-      back{Vector{1.0, 0.0, 0.0}, {0.0, c, -s}, {0.0, s, c}};
+  const Matrix spin = Eigen::AngleAxisd(-draw.within(0.2, 1.3), Vector::UnitX()).toRotationMatrix();
   const Script script = draw_script(trial, draw);
-  const Script other = each_of(script, [&](const Inputs& in) { return turned_as_a_whole(in, spin); });
-  expect_image(trial, script, run(trial, script), run(trial, other), "turned about the normal",
-               [&](std::size_t, const Action& a) { return turned(back, a); });
+  expect_turned(trial, script, spin, "turned about the normal");
   expect_indifferent(trial, host, script, draw_axes_of(script, draw));
   return true;
 }
@@ -353,9 +322,10 @@ bool other_units(const Trial& trial, Draw& draw) {
   const Script script = draw_script(trial, draw);
   const Script other = each_of(script, [&](const Inputs& in) { return in_units(in, units); });
   expect_image(in_others, script, run(trial, script), run(in_others, other), "in other units",
-               [&](std::size_t, const Action& a) {
-                 return Action{scaled(1.0 / units.impulse(), a.impulse),
-                               scaled(1.0 / (units.impulse() * units.length), a.moment)};
+               [&](const Wrench& a) {
+                 Wrench image = a / units.impulse();
+                 image.tail<3>() /= units.length;
+                 return image;
                });
   return true;
 }

@@ -6,24 +6,14 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <exception>
 #include <limits>
 #include <utility>
 
 namespace ilaw::check {
 namespace {
-
-std::string text_of_number(double value) {
-  std::array<char, 32> text{};
-  for (int digits = 6; digits <= 17; ++digits) {
-    std::snprintf(text.data(), text.size(), "%.*g", digits, value);
-    if (std::strtod(text.data(), nullptr) == value) break;
-  }
-  return text.data();
-}
 
 std::string text_of(const Value& value) {
   switch (value.kind) {
@@ -33,7 +23,7 @@ std::string text_of(const Value& value) {
       const auto list = [](const std::vector<double>& numbers) {
         std::string all;
         for (std::size_t k = 0; k < numbers.size() && k < 20; ++k)
-          all += (all.empty() ? "" : ", ") + text_of_number(numbers[k]);
+          all += (all.empty() ? "" : ", ") + check::text_of(numbers[k]);
         return "{" + all + (numbers.size() > 20 ? ", ..." : "") + "}";
       };
       std::string axes;
@@ -44,16 +34,15 @@ std::string text_of(const Value& value) {
     case ILAW_KIND_VALUE_PER_NODE:
       return value.name + " per node";
     default:
-      return value.name + " = " + text_of_number(value.number);
+      return value.name + " = " + check::text_of(value.number);
   }
 }
 
 }  // namespace
 
 std::string text_of(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.17g", value);
-  return text.data();
+  std::array<char, 32> text;
+  return {text.data(), std::to_chars(text.begin(), text.end(), value).ptr};
 }
 
 std::string text_of(const Values& values) {
@@ -132,36 +121,28 @@ SetupStruct::~SetupStruct() {
   }
 }
 
-Instance::Instance(Instance&& other) noexcept
-    : law_(other.law_), made_(std::exchange(other.made_, nullptr)) {}
-Instance& Instance::operator=(Instance&& other) noexcept {
-  std::swap(law_, other.law_);
-  std::swap(made_, other.made_);
-  return *this;
-}
-Instance::~Instance() {
-  if (!made_) return;
+void Instance::Destroy::operator()(ilaw_instance* made) const {
   if (std::uncaught_exceptions() == 0) calling("destroy");  // else what threw is what is named
-  law_->destroy(made_);
+  law->destroy(made);
 }
 
 ilaw_instance_info Instance::info() const {
   ilaw_instance_info info{};
   info.struct_size = sizeof info;
   calling("info");
-  if (const std::int32_t code = law_->info(made_, &info); code != ILAW_OK)
+  if (const std::int32_t code = law_->info(made_.get(), &info); code != ILAW_OK)
     throw Finding{joined("info returned ", code, " for its own instance"), "ILAW_OK"};
   return info;
 }
 
 std::int32_t Instance::initialise(const ilaw_batch& batch, ilaw_report* report) const {
   calling("initialise");
-  return law_->initialise(made_, &batch, report);
+  return law_->initialise(made_.get(), &batch, report);
 }
 
 std::int32_t Instance::evaluate(const ilaw_batch& batch, ilaw_report* report) const {
   calling("evaluate");
-  return law_->evaluate(made_, &batch, report);
+  return law_->evaluate(made_.get(), &batch, report);
 }
 
 std::optional<Instance> create(const ilaw_law& law, const ilaw_setup& setup, Refusal& refusal) {

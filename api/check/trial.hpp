@@ -27,7 +27,7 @@ inline bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
-// As many digits as tell it from all others.
+// As few digits as tell it from all others.
 std::string text_of(double value);
 // Texts and numbers one after another.
 template <class... Parts>
@@ -102,19 +102,20 @@ struct Refusal {
 // Owns an instance of a law.
 class Instance {
  public:
-  Instance(const ilaw_law& law, ilaw_instance* made) : law_(&law), made_(made) {}
-  Instance(Instance&& other) noexcept;
-  Instance& operator=(Instance&& other) noexcept;
-  ~Instance();
+  Instance(const ilaw_law& law, ilaw_instance* made) : law_(&law), made_(made, Destroy{&law}) {}
 
   ilaw_instance_info info() const;
   std::int32_t initialise(const ilaw_batch& batch, ilaw_report* report) const;
   std::int32_t evaluate(const ilaw_batch& batch, ilaw_report* report) const;
-  const ilaw_instance* get() const { return made_; }
+  const ilaw_instance* get() const { return made_.get(); }
 
  private:
+  struct Destroy {
+    const ilaw_law* law;
+    void operator()(ilaw_instance* made) const;
+  };
   const ilaw_law* law_;
-  ilaw_instance* made_;
+  std::unique_ptr<ilaw_instance, Destroy> made_;
 };
 
 // Makes an instance, or says why not.

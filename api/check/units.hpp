@@ -15,7 +15,6 @@ struct Units {
 
   double velocity() const { return length / time; }
   double impulse() const { return mass * velocity(); }
-  double energy() const { return impulse() * velocity(); }
 };
 
 // Powers of mass, length and time; those that hang on a parameter by its symbol.

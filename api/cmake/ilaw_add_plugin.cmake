@@ -50,7 +50,7 @@ function(ilaw_compile_law target)
   target_compile_options(${target} PRIVATE -fno-exceptions -fno-rtti -fno-asynchronous-unwind-tables)
 endfunction()
 
-# The source at one level, as an object whose only global symbol is the function that gives its walks. All else is
+# The source at one level, as an object whose only global symbol is the function that gives its parts. All else is
 # made local: an inline function that has the same name at several levels, of a law's own header or of the standard
 # library, would else be merged by the linker, and code for the best processors run on the least.
 function(ilaw_add_level name source level)
@@ -59,7 +59,7 @@ function(ilaw_add_level name source level)
   add_library(${name}_${level} OBJECT ${source})
   ilaw_compile_law(${name}_${level})
   target_compile_definitions(${name}_${level} PRIVATE ILAW_KIT_LEVEL=${level}
-                                                      ILAW_KIT_WALKS=ilaw_kit_walks_${level})
+                                                      ILAW_KIT_PARTS=ilaw_kit_parts_${level})
   target_compile_options(${name}_${level} PRIVATE -march=x86-64-${level})
   if(level STREQUAL "v4")
     target_compile_options(${name}_${level} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-mprefer-vector-width=512>)
@@ -68,7 +68,7 @@ function(ilaw_add_level name source level)
   set(object ${CMAKE_CURRENT_BINARY_DIR}/${name}_${level}.o)
   add_custom_command(OUTPUT ${object}
     COMMAND ${ILAW_LD} -r --force-group-allocation -o ${object} $<TARGET_OBJECTS:${name}_${level}>
-    COMMAND ${ILAW_OBJCOPY} --keep-global-symbol=ilaw_kit_walks_${level} ${object}
+    COMMAND ${ILAW_OBJCOPY} --keep-global-symbol=ilaw_kit_parts_${level} ${object}
     DEPENDS ${name}_${level} $<TARGET_OBJECTS:${name}_${level}>
     COMMAND_EXPAND_LISTS VERBATIM)
   set_source_files_properties(${object} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)

@@ -142,7 +142,7 @@ int bench(const BenchOptions& options) {
     for (const std::int64_t nodes : options.nodes)
       naming_entry(one, [&] { check_bench(libraries.open(one.library), one, nodes); });
   std::optional<HeldFolder> held;
-  if (!options.folder.empty()) held.emplace(options.folder);
+  if (!options.folder.empty()) held.emplace(options.folder, "bench.csv");
   const std::vector<BenchResult> results = measure_all(cases, options, libraries);
   if (options.as_json) {
     json array = json::array();

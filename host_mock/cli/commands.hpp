@@ -1,4 +1,4 @@
-// commands.hpp - the commands of the program, one file each: its options, and its actions. They throw
+// commands.hpp - the commands of the program: their options, and their actions. They throw
 // InputError or ilaw::error for bad input and any other exception where they fail, or say themselves on
 // stderr what goes wrong, and give an ExitCode.
 // SPDX-License-Identifier: BSD-3-Clause

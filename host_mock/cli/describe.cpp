@@ -1,10 +1,11 @@
+// `ilaw list`: the laws of all libraries on the search path; a broken library is listed with its refusal.
 // `ilaw describe`: all laws of a library, found by law name or file, as text or JSON.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.hpp"
 
+#include "base/child_process.hpp"
 #include "base/exit_code.hpp"
 #include "base/words.hpp"
-#include "cli/description.hpp"
 #include "cli/terminal.hpp"
 
 #include <ilaw/loader.hpp>
@@ -21,6 +22,46 @@ namespace ilaw::host {
 namespace {
 
 using nlohmann::json;
+
+// Whatever code of the library does, the program goes on.
+std::string describe_in_process(const std::string& name_or_path) {
+  constexpr unsigned max_seconds = 20;
+  try {
+    return result_in_process([&] { return ilaw::library(name_or_path).describe(); }, max_seconds);
+  } catch (const ProcessEnded& ended) {
+    throw std::runtime_error(std::string("its code ") + ended.what());
+  } catch (const std::runtime_error& error) {
+    throw ilaw::error(ILAW_BAD_LIBRARY, error.what());
+  }
+}
+
+// The JSON beside the library, without running any of its code; a library without such a file is opened in a
+// process of its own.
+json description_of(const std::string& name_or_path) {
+  const std::string text = ilaw::read_description(name_or_path);
+  return json::parse(text.empty() ? describe_in_process(name_or_path) : text);
+}
+
+int list_laws() {
+  warn_of_search_path();
+  std::printf("search path: %s\n", printable(ilaw::search_path()).c_str());
+  std::vector<Row> rows;
+  for (const std::string& file : ilaw::search()) {
+    try {
+      const json description = description_of(file);
+      const auto text = [](const json& value) { return printable(value.get<std::string>()); };
+      for (const json& law : description["laws"])
+        rows.push_back({text(law["id"]), text(law["title"]),
+                        text(description["name"]) + " " + text(description["version"]), printable(file)});
+    } catch (const ilaw::error& error) {
+      rows.push_back({"-", "refused: " + printable(error.what())});
+    } catch (const std::runtime_error& error) {
+      rows.push_back({"-", "refused: " + printable(file) + ": " + error.what()});
+    }
+  }
+  print_rows(rows, "");
+  return exit_done;
+}
 
 std::string unquoted(const json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
@@ -111,6 +152,12 @@ int describe(const std::string& law_or_file, bool as_json) {
 }
 
 }  // namespace
+
+void add_list(CLI::App& app, int& code) {
+  CLI::App* command = app.add_subcommand("list", "List the laws on the search path");
+  command->footer("Example: ILAW_PATH=$HOME/my_laws ilaw list");
+  command->callback([&code] { code = list_laws(); });
+}
 
 void add_describe(CLI::App& app, int& code) {
   struct Options {

@@ -34,7 +34,7 @@ void add_plot(CLI::App& app, int& /*code*/) {
   command->footer(
       "Writes .png and .svg.\n"
       "Example: ilaw plot results\n         ilaw plot results/* --y glue.F2,n50.u2");
-  run_in_python(*command, "ilaw.plot", "numpy, matplotlib", "python3-numpy python3-matplotlib", options);
+  run_in_python(*command, {"ilaw.plot", "numpy, matplotlib", "python3-numpy python3-matplotlib"}, options);
 }
 
 }  // namespace ilaw::host

@@ -38,8 +38,9 @@ std::vector<std::string> given_to(const CLI::App& command) {
   return words;
 }
 
-[[noreturn]] void become(const std::string& module, const std::vector<std::string>& arguments,
-                         const std::string& packages, const std::string& debian_packages) {
+}  // namespace
+
+void become_python(const CLI::App& command, const PythonModule& module) {
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
   const std::filesystem::path package = program.parent_path().parent_path() / "share/ilaw/python";
   if (!std::filesystem::is_directory(package / "ilaw"))
@@ -53,15 +54,16 @@ std::vector<std::string> given_to(const CLI::App& command) {
   for (const std::string python : {"python3", "/usr/bin/python3"}) {
     // Found, not imported, which would take as long as the command itself.
     const std::string look = " -B -c 'from importlib.util import find_spec as f; exit(not all(map(f, \"" +
-                             packages + "\".split(\", \"))))' 2> /dev/null";
+                             module.packages + "\".split(\", \"))))' 2> /dev/null";
     const int code = std::system((python + look).c_str());
     if (WIFSIGNALED(code) || WEXITSTATUS(code) > 128) throw std::runtime_error("interrupted");
     if (code != 0) continue;
     // Until the module is there to say so, an interrupt just ends it.
     const std::string start =
         "import runpy, signal as s; s.getsignal(2) == s.SIG_IGN or s.signal(2, s.SIG_DFL); runpy.run_module('" +
-        module + "', run_name='__main__', alter_sys=True)";
+        module.name + "', run_name='__main__', alter_sys=True)";
     std::vector<std::string> words = {python, "-B", "-c", start};
+    const std::vector<std::string> arguments = given_to(command);
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
     std::transform(words.begin(), words.end(), std::back_inserter(pointers),
@@ -69,16 +71,12 @@ std::vector<std::string> given_to(const CLI::App& command) {
     pointers.push_back(nullptr);
     execvp(pointers[0], pointers.data());
   }
-  throw std::runtime_error("found no Python 3 with " + packages + "; install it with `apt-get install " +
-                           debian_packages + "`");
+  throw std::runtime_error("found no Python 3 with " + module.packages +
+                           "; install it with `apt-get install " + module.debian_packages + "`");
 }
 
-}  // namespace
-
-void run_in_python(CLI::App& command, const std::string& module, const std::string& packages,
-                   const std::string& debian_packages, const std::shared_ptr<void>& kept) {
-  command.callback(
-      [=, &command, kept = kept] { become(module, given_to(command), packages, debian_packages); });
+void run_in_python(CLI::App& command, const PythonModule& module, const std::shared_ptr<void>& kept) {
+  command.callback([=, &command, kept = kept] { become_python(command, module); });
 }
 
 }  // namespace ilaw::host

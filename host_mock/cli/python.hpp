@@ -9,10 +9,14 @@
 
 namespace ilaw::host {
 
-// Makes a command become a module of share/ilaw/python with the options and arguments that the user gave, in
-// the first Python that has the packages. Throws if there is none, with the Debian packages to install. kept:
-// what the options are bound to.
-void run_in_python(CLI::App& command, const std::string& module, const std::string& packages,
-                   const std::string& debian_packages, const std::shared_ptr<void>& kept);
+struct PythonModule {
+  std::string name, packages, debian_packages;
+};
+
+// Becomes a module of share/ilaw/python with the options and arguments that the user gave to the command, in
+// the first Python that has the packages. Throws if there is none, with the Debian packages to install.
+[[noreturn]] void become_python(const CLI::App& command, const PythonModule& module);
+// Makes a command do so. kept: what the options are bound to.
+void run_in_python(CLI::App& command, const PythonModule& module, const std::shared_ptr<void>& kept);
 
 }  // namespace ilaw::host

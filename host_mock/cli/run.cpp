@@ -1,6 +1,5 @@
 // `ilaw run`: a scene from JSON to results.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/run.hpp"
 #include "cli/commands.hpp"
 
 #include "audit/audit.hpp"
@@ -10,7 +9,9 @@
 #include "base/large_pages.hpp"
 #include "base/stop_request.hpp"
 #include "base/words.hpp"
+#include "check/progress.hpp"
 #include "cli/guard.hpp"
+#include "cli/python.hpp"
 #include "cli/terminal.hpp"
 #include "model/elements.hpp"
 #include "results/checkpoint.hpp"
@@ -18,6 +19,7 @@
 #include "results/expectations.hpp"
 #include "results/fields.hpp"
 #include "results/history.hpp"
+#include "results/state_hash.hpp"
 #include "results/summary.hpp"
 #include "scene/read_meshes.hpp"
 #include "scene/scene.hpp"
@@ -38,6 +40,17 @@
 
 namespace ilaw::host {
 namespace {
+
+struct RunOptions {
+  std::filesystem::path scene, folder, text;  // text: a file to read instead; empty: none
+  std::int64_t checkpoint_every = 0;          // steps; 0: never
+  bool resume = false;
+  int threads = 1;
+  std::optional<double> tolerance = {};  // of coupled contacts
+  check::ProgressForm progress = check::ProgressForm::line;
+  bool audits = false;                // each step (audit/audit.hpp)
+  std::vector<std::string> settings;  // of --set, which ilaw.sweep reads
+};
 
 double seconds_since(double start) { return clock_seconds(CLOCK_MONOTONIC) - start; }
 
@@ -60,9 +73,10 @@ class Run {
       interface->ask_energies(scene.output.energy != "interface_work");
     if (options.audits) audit_.emplace(scene, integrator_);
     if (options.tolerance) integrator_.set_tolerance(*options.tolerance);
-    if (!expected().empty()) check_expectations(expected(), summary(), history_.columns());
+    if (!expected().empty()) check_expectations(expected(), summary(), history_.names());
     // The folder of a run to resume is there already.
-    if (!options.resume || std::filesystem::is_directory(options.folder)) held_.emplace(options.folder);
+    if (!options.resume || std::filesystem::is_directory(options.folder))
+      held_.emplace(options.folder, "summary.json");
     options.resume ? resume() : begin();
   }
 
@@ -70,14 +84,13 @@ class Run {
   void advance() {
     try {
       if (!options_.resume) start();
-      check::Progress own("run", "steps", static_cast<double>(scene_.steps), options_.progress);
-      check::Progress& progress = options_.shared ? *options_.shared : own;
-      own.begin_at(static_cast<double>(integrator_.steps()));
+      check::Progress progress("run", "steps", static_cast<double>(scene_.steps), options_.progress);
+      progress.begin_at(static_cast<double>(integrator_.steps()));
       const double start_of_steps = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
       while (integrator_.steps() < scene_.steps && !stop_requested()) {
         audited([this] { integrator_.step(); });
         tell_of_stable_step();
-        history_.add_step(integrator_);
+        history_.add_step();
         if (events_) events_->add_step(integrator_);
         write_outputs();
         progress.add(1.0);
@@ -192,10 +205,10 @@ class Run {
   void start() {
     if (scene_.prestress) find_equilibrium();
     audited([this] { integrator_.start(); });
-    if (const auto& found = integrator_.prestressed(); found && options_.tells_of_start)
+    if (const auto& found = integrator_.prestressed())
       std::printf("prestress: static equilibrium after %lld steps, residual %.2g\n",
                   static_cast<long long>(found->steps), found->residual);
-    history_.add_start(integrator_);
+    history_.add_start();
     if (events_) events_->add_step(integrator_);
     if (scene_.output.fields > 0) fields_.write(integrator_);
   }
@@ -269,7 +282,7 @@ class Run {
     if (!row && !field && !checkpoint) return;
     const double start = clock_seconds(CLOCK_MONOTONIC);
     if (row || field) check_motion();
-    if (row) history_.add_row(integrator_);
+    if (row) history_.add_row();
     if (field) fields_.write(integrator_);
     if (checkpoint) write_checkpoint_now();
     record.seconds_output += seconds_since(start);
@@ -321,20 +334,47 @@ std::unique_ptr<Run> start_or_explain(Scene& scene, const RunOptions& options) {
   return nullptr;
 }
 
-int run(const RunOptions& options) {
-  place_arrays_one_after_another();
-  set_threads(options.threads);
-  name_crashes();
-  warn_of_search_path();
-  Scene scene = in_scene(options.scene, [&] { return read_scene(options.scene); });
-  for (const nlohmann::json& mesh : scene.meshes) std::printf("%s\n", printable(line_of_mesh(mesh)).c_str());
-  std::fflush(stdout);        // before what goes to stderr
-  name_crashes_of_threads();  // after reading: readers of meshes are processes, which threads must not start
-  return run_scene(scene, options);
+// Of the expectations of a scene; a missed one is a complaint with its reason.
+int report_judged(const Scene& scene, const nlohmann::json& judged) {
+  int code = exit_done;
+  for (const nlohmann::json& one : judged) {
+    const std::string line = describe_judged(one);
+    if (one["within"]) {
+      std::printf("  %s\n", printable(line).c_str());
+      continue;
+    }
+    complain(scene.file.string() + ": missed: " + line + "; " + one["because"].get<std::string>());
+    code = exit_missed;
+  }
+  return code;
 }
 
-}  // namespace
+// In words and as an exit code.
+int report_run(const Scene& scene, const Run& run, const RunOptions& options) {
+  const Integrator& integrator = run.integrator();
+  const RunRecord& record = run.record;
+  const std::filesystem::path& folder = options.folder;
+  const std::string file = scene.file.string(), steps = std::to_string(integrator.steps());
+  if (!record.failure.empty()) {
+    complain(file + ": failed after step " + steps + ", time " + text_of("%g", integrator.time()) + ": " +
+             record.failure);
+    return exit_failed;
+  }
+  if (record.interrupted) {
+    complain(file + ": interrupted at step " + steps + " of " + std::to_string(scene.steps) +
+             "; the files in " + folder.string() + " are whole up to there" +
+             (options.checkpoint_every > 0 ? ", and --resume goes on from there" : ""));
+    return exit_failed;
+  }
+  std::printf(
+      "%s: %lld steps to time %g in %.2g s, energy balance closed to %.1e, state %s%s; results in %s\n",
+      printable(scene.title).c_str(), static_cast<long long>(integrator.steps()), integrator.time(),
+      record.seconds_total, integrator.energy().balance_error, state_hash(scene, integrator).c_str(),
+      scene.warnings.empty() && record.warnings.empty() ? "" : ", with warnings", folder.c_str());
+  return report_judged(scene, run.judged);
+}
 
+// Into options.folder, which it makes and holds; says on stderr what goes wrong.
 int run_scene(Scene& scene, const RunOptions& options) {
   const double start = clock_seconds(CLOCK_MONOTONIC);
   catch_interrupts();
@@ -348,12 +388,27 @@ int run_scene(Scene& scene, const RunOptions& options) {
   run->advance();
   run->finish(seconds_since(start));
   warn(run->record.warnings);
-  return report_run(scene, run->integrator(), run->record, run->judged, options);
+  return report_run(scene, *run, options);
 }
+
+int run(const RunOptions& options) {
+  place_arrays_one_after_another();
+  set_threads(options.threads);
+  name_crashes();
+  warn_of_search_path();
+  Scene scene = in_scene(options.scene, [&] {
+    return read_scene(read_scene_source(options.text.empty() ? options.scene : options.text), options.scene);
+  });
+  for (const nlohmann::json& mesh : scene.meshes) std::printf("%s\n", printable(line_of_mesh(mesh)).c_str());
+  std::fflush(stdout);        // before what goes to stderr
+  name_crashes_of_threads();  // after reading: readers of meshes are processes, which threads must not start
+  return run_scene(scene, options);
+}
+
+}  // namespace
 
 void add_run(CLI::App& app, int& code) {
   const auto options = std::make_shared<RunOptions>();
-  const auto settings = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand("run", "Run a scene and write history.csv and summary.json");
   command->add_option("scene", options->scene, "Scene file (JSON)")->required();
   command->add_option("--out", options->folder, "Folder for the results, made if it does not exist")
@@ -375,14 +430,21 @@ void add_run(CLI::App& app, int& code) {
       ->check(CLI::Range(1e-15, 0.1))
       ->excludes("--resume");
   command
-      ->add_option("--set", *settings,
+      ->add_option("--set", options->settings,
                    "/pointer=value,value,...: a run with each value of a key of the scene, --threads at a "
                    "time, and sweep.csv; may be repeated")
       ->excludes("--resume")
       ->expected(1)
       ->take_all();
+  command
+      ->add_option("--read-from", options->text,
+                   "File to read instead; names in it and messages stay those of the scene file")
+      ->excludes("--set");
   command->footer("Example: ilaw run plugins/contact/bouncing_ball.json --out results");
-  command->callback([=, &code] { code = settings->empty() ? run(*options) : sweep(*options, *settings); });
+  command->callback([=, &code] {
+    if (!options->settings.empty()) become_python(*command, {"ilaw.sweep", "numpy", "python3-numpy"});
+    code = run(*options);
+  });
 }
 
 }  // namespace ilaw::host

@@ -44,8 +44,8 @@ void add_converge(CLI::App& app, int& /*code*/) {
   command->add_option("--out", options->folder, "Folder for converge.csv and .json, which `ilaw plot` draws")
       ->required();
   add_sweep(*command, *options, "Number of runs, the scene's own included", CLI::Range(2, 12));
-  command->footer("Example: ilaw converge host_mock/scenes/bar_on_wall.json --out results");
-  run_in_python(*command, "ilaw.converge", "numpy", "python3-numpy", options);
+  command->footer("Example: ilaw converge host_mock/scenes/bar_on_wall.json --out errors");
+  run_in_python(*command, {"ilaw.converge", "numpy", "python3-numpy"}, options);
 }
 
 void add_study(CLI::App& app, int& /*code*/) {
@@ -70,9 +70,9 @@ void add_study(CLI::App& app, int& /*code*/) {
                    "Repetitions of each run, for the median of its times")
       ->check(CLI::Range(1, 1000));
   command->footer(
-      "Example: ilaw study host_mock/scenes/bar_on_wall.json --out results\n"
-      "         ilaw study scene.json --out results --law contact --law 'penalty:{\"stiffness\": 1e6}'");
-  run_in_python(*command, "ilaw.study", "numpy", "python3-numpy", options);
+      "Example: ilaw study host_mock/scenes/bar_on_wall.json --out study\n"
+      "         ilaw study scene.json --out study --law contact --law 'penalty:{\"stiffness\": 1e6}'");
+  run_in_python(*command, {"ilaw.study", "numpy", "python3-numpy"}, options);
 }
 
 }  // namespace ilaw::host

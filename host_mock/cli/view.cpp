@@ -30,7 +30,7 @@ void add_view(CLI::App& app, int& /*code*/) {
   command->footer(
       "The file opens in any browser and needs no network.\n"
       "Example: ilaw view results -o run.html");
-  run_in_python(*command, "ilaw.view", "numpy, vtkmodules.vtkIOXML", "python3-numpy python3-vtk9", options);
+  run_in_python(*command, {"ilaw.view", "numpy, vtkmodules.vtkIOXML", "python3-numpy python3-vtk9"}, options);
 }
 
 }  // namespace ilaw::host

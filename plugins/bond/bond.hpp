@@ -76,10 +76,11 @@ struct adhesive_bond {
     if (any(open)) {
       p = {as_full(node.delassus), node.v_free, node.v_previous, node.gap, node.area, node.state};
       if constexpr (is_transverse<Node>) {
-        const mask_of<V> changes = (node.state.memory != 1.0 - Law<V>::broken) & opens(node);
-        if (any(open & !changes)) {
+        // Of these lanes alone: whether a node is open must not depend on its neighbours.
+        const mask_of<V> tried = open & !((node.state.memory != 1.0 - Law<V>::broken) & opens(node));
+        if (any(tried)) {
           answer a;
-          if (const mask_of<V> stays = stay(p, open, a, node.prepared); any(stays)) {
+          if (const mask_of<V> stays = stay(p, tried, a, node.prepared); any(stays)) {
             give(node, a, stays);
             status = select(stays, status_of<V>(status::bonded), status);
             open = open & !stays;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <ilaw/kit/law.hpp>
-#include <ilaw/kit/symmetric.hpp>
+#include <ilaw/kit/vector.hpp>
 
 namespace bond_law::inline ILAW_KIT_LEVEL {
 

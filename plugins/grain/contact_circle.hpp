@@ -81,6 +81,10 @@ struct circle_step {
             zero_unless(counts, viscosity)};
   }
   V residual(const motion& m) const { return m.moved + travel + give * m.force; }
+  // By the motion where that rounds less: the terms of S, of the pull's size, cancel in a stiff step.
+  V force_of(const motion& m) const {
+    return select(give * scale.pull > absolute(travel), -(m.moved + travel) / give, m.force);
+  }
   V most_that_opens() const { return before() - scale.least; }
 
   // The neck breaks where even that much force does not hold it.

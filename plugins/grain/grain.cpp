@@ -125,7 +125,7 @@ struct grain {
   }
   mask_of<V> solve(const problem& p, answer& a) const {
     const V growth = p.solve();
-    a = {p.by(growth).force, p.grown, p.grown + growth};
+    a = {p.force_of(p.by(growth)), p.grown, p.grown + growth};
     return !(absolute(growth) < infinity);
   }
   void solve_scalar(const problem& p, answer& a) const { solve(p, a); }

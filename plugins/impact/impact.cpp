@@ -73,7 +73,9 @@ struct impact {
     if (any(friction > 0.0)) {
       const V kinetic = smaller(kinetic_friction, friction),
               now = select(has_slipped(node), kinetic, friction);
-      const status_of<V> rubbed = apply_friction(node, found, restitution, now, kinetic, node.state.ratio);
+      V ratio = node.state.ratio;
+      const status_of<V> rubbed = apply_friction(node, found, restitution, now, kinetic, ratio);
+      node.state.ratio = select(friction > 0.0, ratio, node.state.ratio);
       pressed = select(friction > 0.0, rubbed, pressed);
     }
     node.impulse.n = found.impulse;

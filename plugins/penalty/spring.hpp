@@ -5,7 +5,7 @@
 #pragma once
 
 #include <ilaw/kit/roots.hpp>
-#include <ilaw/kit/symmetric.hpp>
+#include <ilaw/kit/vector.hpp>
 
 namespace penalty_law {
 

@@ -30,7 +30,7 @@ struct template_law {
                                                             .required = true}};
 
   // r_N = h c A <-(v_N + <v_N^->)>, v_N = v_free + H_NN r_N, solved for r_N: the dashpot is one more inverse
-  // mass beside H_NN. The work r_N (v_N^- + v_N)/2 is never positive (contact.hpp says why).
+  // mass beside H_NN. The work r_N (v_N^- + v_N)/2 is never positive (friction.hpp says why).
   template <class Node>
   status_of<V> step(Node& node) const {
     const V compliance = 1.0 / (node.velocity_step * damping * node.area);

@@ -432,12 +432,15 @@ static int leaves_out(const char* output, const ilaw_batch* b, int64_t k) {
 static void write_node(const node* at, const ilaw_batch* b, int64_t k, const double* state) {
   const spin_arrays spins = spins_of(b);
   const int64_t i = node_of(b, k);
+  const int has_spins = spins.moment.values || spins.moment.floats;
+  const int64_t state_stride =
+      breaks("layout-strides: state") && !has_spins ? b->state_in.node_stride : b->state_out.node_stride;
   const double factor = breaks("floats-rounded: moment") && at->floats ? 1.0 + 1e-6 : 1.0;
   int c;
   for (c = 0; c < at->d && !leaves_out("outputs-written: impulse", b, k); ++c)
     put(&b->impulse, i, c, at->r[c]);
   if (!leaves_out("outputs-written: state", b, k))
-    memcpy(&b->state_out.values[i * b->state_out.node_stride], state, sizeof *state);
+    memcpy(&b->state_out.values[i * state_stride], state, sizeof *state);
   for (c = 0; c < 4 && !leaves_out("outputs-written: energy", b, k); ++c)
     put(&b->energy, i, c, at->energy[c]);
   for (c = 0; b->amounts && c < AMOUNT_COUNT && !leaves_out("outputs-written: amounts", b, k); ++c)

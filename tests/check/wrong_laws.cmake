@@ -54,7 +54,7 @@ ilaw_add_wrong_law(rolling_work rolling api/include/ilaw/kit/detail/kernel.hpp
                    "along_tangents = along_tangents - 0.5 * (twist + roll);"
                    "along_tangents = along_tangents - 0.0 * (twist + roll);")
 # The velocity does not know the moment.
-ilaw_add_wrong_law(rolling_velocity rolling api/include/ilaw/kit/symmetric.hpp
+ilaw_add_wrong_law(rolling_velocity rolling api/include/ilaw/kit/vector.hpp
                    "return transverse<V>::times(r) - k * q.tangential_part();"
                    "return transverse<V>::times(r) - 0.0 * k * q.tangential_part();")
 # Does not turn its history with the normal.

@@ -28,7 +28,12 @@ class ScenesPage(unittest.TestCase):
     def test_thrown_mass_stops_where_friction_leaves_it(self):
         warnings, rows = history_of(THROWN)
         self.assertEqual(warnings, "")
-        self.assertAlmostEqual(rows[-1]["n0.u0"], 2.80, delta=0.01)
+        lands = next(row for row in rows if row["n0.u1"] <= -0.45 + 1e-9)
+        self.assertAlmostEqual(lands["time"], 0.3, delta=2e-3)
+        self.assertAlmostEqual(next(row for row in rows if row["time"] > 0.301)["n0.v0"], 3.1, delta=0.02)
+        stands = next(row for row in rows if abs(row["n0.v0"]) <= 1e-12)
+        self.assertAlmostEqual(stands["time"], 1.333, delta=5e-3)
+        self.assertAlmostEqual(stands["n0.u0"], 2.80, delta=5e-3)
         self.assertEqual(rows[-1]["n0.v0"], 0)
 
     def test_pressed_pad_has_the_friction_of_its_pressure(self):

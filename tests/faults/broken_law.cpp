@@ -101,13 +101,19 @@ double stop(const ilaw_batch& batch, std::int64_t node) {
 
 // What an audit must find: another answer when it is asked again, and one that no such law may give.
 double false_impulse(const ilaw_batch& batch, std::int64_t node) {
-  static double asked_at = 0.0;
+  static double asked_at = 0.0, asked_gap = 0.0;
   if (breaks("push")) return 1.0;  // whatever the motion
   if (breaks("lets_in")) return stop(batch, node);
   if (breaks("other_start"))
     return batch.time == 0.0 && !batch.v_smooth.values ? 1.0 : 0.0;  // not to an audit
   if (batch.time < 2.9) return 0.0;
   if (breaks("other_answer")) return std::exchange(asked_at, batch.time) < batch.time ? 1.0 : 0.0;
+  if (breaks("other_gap")) {  // the same answer to an audit at a gap that is smaller by 2e-12
+    const double gap = batch.gap.values[node * batch.gap.node_stride];
+    if (std::exchange(asked_at, batch.time) >= batch.time) return gap < asked_gap - 2e-12 ? 1.0 : 0.0;
+    asked_gap = gap;
+    return 1.0;
+  }
   return breaks("pull") ? -1.0 : 0.0;
 }
 

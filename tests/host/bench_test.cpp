@@ -130,28 +130,6 @@ TEST(Bench, TakesThePathOfALibraryInAFileOfCases) {
   }
 }
 
-TEST(Bench, NamesTheEntryOfAFileThatItRefuses) {
-  const auto folder = fresh_folder();
-  const std::pair<json, const char*> refusals[] = {
-      {{{"law", "no_such_law"}}, "no_such_law"},
-      {{{"law", "x.so"}}, "the path of a file has a '/', as ./x.so"},
-      {{{"law", "viscous"}, {"library", "contact"}}, "found no law 'viscous' in "},
-      {{{"law", ILAW_VISCOUS_C}, {"library", "contact"}}, "expected the name of a law of 'library'"},
-      {{{"law", "contact"}, {"touching", 2}}, "touching: found 2, expected a number from 0 to 1"},
-      {{{"law", "contact"}, {"pressed", "all"}}, "must be number, but is string"},
-      {{{"law", "contact"}, {"layout", "zigzag"}}, "layout: found 'zigzag', expected one of aos, soa"},
-      {{{"law", ILAW_VISCOUS_C}, {"delassus", "full"}}, "found H full, which it does not serve"}};
-  for (const auto& [entry, said] : refusals) {
-    const json entries = json::array({{{"law", "contact"}}, entry});
-    const Outcome outcome = run_program("bench " + file_of_cases(folder, entries) + " --nodes 20");
-    EXPECT_EQ(outcome.code, 2) << entry;
-    const std::size_t where = outcome.output.find("cases.json: /benchmarks/1: ");
-    EXPECT_NE(where, std::string::npos) << outcome.output;
-    EXPECT_NE(outcome.output.find(said, std::min(where, outcome.output.size())), std::string::npos)
-        << outcome.output;
-  }
-}
-
 // A law would take another one without a word.
 TEST(Environment, AnInstructionSetThatNoLawKnowsIsRefused) {
   for (const char* value : {"", "V3", "avx2", "v2", "v5", "v3 "}) {

@@ -56,53 +56,6 @@ json column_scene(int balls, int more = 0) {
 Scene column(int balls, int more = 0) { return scene_of(column_scene(balls, more).dump()); }
 constexpr int too_long = 2100;  // for Newton's method, too
 
-// Each contact carries what lies above it. Sweeps alone would take some 2000 for twelve balls.
-TEST(Column, EachContactCarriesWhatLiesAboveIt) {
-  for (const int balls : {12, 30}) {
-    auto [scene, integrator] = simulation_of(column(balls));
-    integrator.set_tolerance(1e-14);
-    while (integrator.steps() < scene.steps) {
-      integrator.step();
-      if (integrator.steps() == 1) continue;  // takes the kick of half a step out, too
-      for (int k = 0; k < balls; ++k) {
-        const Interface& contact = *scene.interfaces[static_cast<std::size_t>(k)];
-        EXPECT_NEAR(contact.impulse(contact.active().at(0))[0], 0.01 * (balls - k), 1e-12) << k;
-      }
-      EXPECT_LE(integrator.velocity().cwiseAbs().maxCoeff(), 1e-12) << "balls " << balls;
-    }
-    EXPECT_LE(integrator.tally().sweeps_max, 110) << "balls " << balls;
-    EXPECT_LE(integrator.tally().coupling_residual_max, 1e-13) << "balls " << balls;
-    EXPECT_EQ(integrator.tally().unconverged, 0) << "balls " << balls;
-    EXPECT_TRUE(integrator.warnings().empty()) << "balls " << balls;
-  }
-}
-
-// A step begins with the forces of the last one: at rest it has hardly anything to find.
-TEST(Column, StaysAtRestWithFewIterations) {
-  auto [scene, integrator] = simulation_of(column(60));
-  integrator.start();
-  integrator.step();
-  const std::int64_t first = integrator.tally().sweeps;
-  EXPECT_GT(first, 100) << "a column that is hard to solve";
-  while (integrator.steps() < scene.steps) integrator.step();
-  EXPECT_LT(integrator.tally().sweeps - first, 30 * (integrator.steps() - 1)) << "iterations a step";
-  EXPECT_EQ(integrator.tally().unconverged, 0);
-}
-
-// Too long for accelerated iterations, but not for Newton's method between them: to what 250 roundings leave.
-TEST(Column, IsSolvedByNewtonStepsWhenLong) {
-  constexpr int balls = 250;
-  auto [scene, integrator] = simulation_of(column(balls));
-  for (int step = 0; step < 2; ++step) integrator.step();
-  EXPECT_GT(integrator.tally().sweeps_max, 100);
-  EXPECT_LT(integrator.tally().sweeps_max, 1000);
-  EXPECT_EQ(integrator.tally().unconverged, 0);
-  for (int k = 0; k < balls; ++k) {
-    const Interface& contact = *scene.interfaces[static_cast<std::size_t>(k)];
-    EXPECT_NEAR(contact.impulse(contact.active().at(0))[0], 0.01 * (balls - k), 1e-14 * balls * balls) << k;
-  }
-}
-
 // The residual is the last change of an impulse: it bounds by how much impulses differ from those of the
 // laws.
 TEST(Column, WarnsWhenTooLong) {

@@ -56,20 +56,6 @@ inline Scene scene_of(const char* text) { return scene_of(std::string(text)); }
 inline Scene scene_of(const json& source) { return scene_of(source.dump()); }
 inline Scene scene_of(Scene scene) { return scene; }
 
-// The message with which a scene is refused.
-template <class Source>
-std::string refusal_of(const Source& source) {
-  try {
-    scene_of(source);
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "not refused";
-}
-
-// Three steps without a common factor.
-inline constexpr double coprime_steps[] = {1e-2, 3.7e-3, 1.3e-3};
-
 // The host's, of which each step is judged by the laws alone, momentum, energy and gaps.
 class Integrator : public host::Integrator {
  public:

@@ -1,6 +1,5 @@
-// Files of meshes: sets that they name, mistakes that are refused, and files that are damaged in any way.
-#include "run_result.hpp"
-
+// Files of meshes: sets that they name, and files that are damaged in any way; refusals.json has their
+// mistakes.
 #include "mesh_writer.hpp"
 #include "model/mesh_topology.hpp"
 #include "scene/read_meshes.hpp"
@@ -19,84 +18,7 @@ json scene_with(const std::string& file) {
           {"interfaces", json::array()}};
 }
 
-std::string refusal_of_mesh(const WrittenMesh& mesh) {
-  const MeshFile file(mesh);
-  return refusal_of(scene_with(file.path()));
-}
-
 WrittenMesh two_cells() { return box_mesh({2, 1, 1}, {2, 1, 1}, false); }
-
-void expect_refusal(const std::string& found, const std::string& expected) {
-  EXPECT_EQ(found.rfind("/model/meshes/0/file: ", 0), 0U) << found;
-  EXPECT_THAT(found, HasSubstr(expected));
-}
-
-// ---- what is refused ------------------------------------------------------------------------------------
-
-// Nothing in a file of the legacy format tells whether its end is missing.
-TEST(MeshFile, ThatCannotBeReadIsRefused) {
-  const auto changed = [](const char* from, const char* to) {
-    std::string text = two_cells().vtu();
-    return text.replace(text.rfind(from), std::string(from).size(), to);
-  };
-  expect_refusal(refusal_of(scene_with("nowhere.vtu")), "nowhere.vtu: no such file, expected a mesh");
-  expect_refusal(refusal_of(scene_with("/tmp")), "found no file, expected a mesh");
-  for (
-      const auto& [name, text, expected] : std::vector<std::array<std::string, 3>>{
-          {"part.msh", "$MeshFormat\n",
-           "found the extension '.msh', expected .vtu; `meshio convert mesh.msh mesh.vtu` writes one (Debian package "
-           "python3-meshio)"},
-          {"part.vtk", "# vtk DataFile Version 3.0\n", "`meshio convert mesh.vtk mesh.vtu` writes one"},
-          {"mesh.vtu", changed("12 12", "12 13"),
-           "cell 1: found VTK's cell type 13, expected elements with 4 or 8 nodes (types 10, 12)"},
-          {"mesh.vtu", changed("8 16", "7 16"), "cell 0: found 7 nodes, expected 8"}}) {
-    const MeshFile file(text, name);
-    expect_refusal(refusal_of(scene_with(file.path())), expected);
-  }
-}
-
-TEST(MeshFile, ThatMakesNoBodyIsRefusedWithThePlace) {
-  struct Mistake {
-    bool tetrahedra;
-    std::function<void(WrittenMesh&)> make;
-    const char* expected;
-  };
-  const auto swap_in = [](std::size_t cell) {
-    return [cell](WrittenMesh& mesh) { std::swap(mesh.cells[cell].nodes[0], mesh.cells[cell].nodes[1]); };
-  };
-  const auto node_is = [](int node) { return [node](WrittenMesh& mesh) { mesh.cells[1].nodes[3] = node; }; };
-  for (const auto& [tetrahedra, make, expected] : std::vector<Mistake>{
-           {false, swap_in(1), "cell 1: found the scaled Jacobian -"},
-           {true, swap_in(4), "cell 4: found the scaled Jacobian -"},
-           {true, [](WrittenMesh& mesh) { mesh.nodes[7] = mesh.nodes[3]; },
-            "cell 0: found the scaled Jacobian "},
-           {false, [](WrittenMesh& mesh) { mesh.nodes.emplace_back(5, 5, 5); },
-            "node 12: found in no element, expected every node in one"},
-           {false, node_is(12), "cell 1: found node 12, expected 0 to 11"},
-           {false, node_is(-1), "cell 1: found node -1, expected 0 to 11"},
-           {false, node_is(2147483647), "cell 1: found node 2147483647, expected 0 to 11"},
-           {false, [](WrittenMesh& mesh) { mesh.cells.insert(mesh.cells.end(), 2, MeshCell(mesh.cells[1])); },
-            "found one face in all of them, expected a face in at most two elements"},
-           {false,
-            [](WrittenMesh& mesh) {
-              mesh.cells.push_back({CellKind::triangle, {0, 1, 11, 0, 0, 0, 0, 0}});
-            },
-            "cell 2: found a triangle that is a face of no element, expected one"},
-           {false,
-            [](WrittenMesh& mesh) {
-              mesh.cells = {{CellKind::quadrangle, {0, 1, 4, 3, 0, 0, 0, 0}}};
-            },
-            "found no elements, expected tetrahedra or hexahedra"},
-           {false,
-            [](WrittenMesh& mesh) {
-              mesh.of_cells["boundary"] = {0, 1};
-            },
-            "array 'boundary': found the name of a set that every mesh has"}}) {
-    WrittenMesh mesh = tetrahedra ? box_mesh({1, 1, 1}, {1, 1, 1}, true) : two_cells();
-    make(mesh);
-    expect_refusal(refusal_of_mesh(mesh), expected);
-  }
-}
 
 // Without its last byte the mesh is the same: the file ends with a line feed.
 TEST(MeshFile, ThatIsCutOffIsRefused) {
@@ -110,18 +32,7 @@ TEST(MeshFile, ThatIsCutOffIsRefused) {
       fs::resize_file(file.path(), --size);
       EXPECT_THROW(read_mesh_file(file.path()), MeshError) << name << " of " << size << " bytes";
     }
-    expect_refusal(refusal_of(scene_with(file.path())), "the file is damaged: it does not end with");
   }
-}
-
-TEST(MeshFile, WithoutTheSetOfASceneNamesThoseThereAre) {
-  const MeshFile file(two_cells());
-  json scene = scene_with(file.path());
-  scene["loads"] = {{{"type", "pressure"}, {"surface", "b.top"}, {"history", {{0, 1}}}}};
-  EXPECT_EQ(
-      refusal_of(scene),
-      "/loads/0/surface: found \"b.top\", expected one of b.boundary, b.x_max, b.x_min, b.y_max, b.y_min, "
-      "b.z_max, b.z_min");
 }
 
 // ---- sets -----------------------------------------------------------------------------------------------
@@ -152,16 +63,6 @@ TEST(MeshFile, NamesSetsByArraysOfIntegers) {
   EXPECT_EQ(sets.at("b.left").nodes, (std::vector<int>{0, 3, 6, 9}));
   EXPECT_EQ(sets.at("b.left").facets.size(), 2U);
   EXPECT_EQ(sets.count("b.left_1"), 0U);
-}
-
-TEST(MeshFile, WithTwoArraysForOneSetIsRefused) {
-  WrittenMesh mesh = two_cells();
-  mesh.of_cells["a b"] = {1, 0};
-  mesh.of_cells["a_b"] = {0, 1};
-  expect_refusal(refusal_of_mesh(mesh), "found two arrays or values for the set 'a_b', expected one");
-  mesh.of_cells.erase("a_b");
-  mesh.of_nodes["a_b"].assign(12, 1);
-  EXPECT_EQ(refusal_of_mesh(mesh), "not refused");  // sets of nodes and of cells may share a name
 }
 
 // Numbers of nodes are no names.
@@ -200,31 +101,6 @@ TEST(MeshFile, TellsOfPartsThatShareNoNode) {
   mesh.cells.push_back(cell);
   const MeshFile file(mesh);
   EXPECT_EQ(scene_of(scene_with(file.path()).dump()).meshes[0]["parts"], 2);
-}
-
-TEST(MeshFile, CannotBeRefined) {
-  const MeshFile file(two_cells());
-  json scene = scene_with(file.path());
-  scene["converge"] = {{"refine", "mesh"}};
-  scene["exact"] = {{"type", "held_rod"}};
-  std::ofstream(file.path().parent_path() / "scene.json") << scene.dump();
-  EXPECT_THAT(run_program("converge " + (file.path().parent_path() / "scene.json").string() + " --out " +
-                          (file.path().parent_path() / "out").string()),
-              Exits(2, HasSubstr("a mesh from a file cannot be refined")));
-}
-
-TEST(MeshFile, WarnsOfTetrahedraThatLock) {
-  const MeshFile file(box_mesh({1, 1, 1}, {1, 1, 1}, true));
-  json scene = scene_with(file.path());
-  json& mesh = scene["model"]["meshes"][0];
-  mesh["material"]["poisson"] = 0.45;
-  ASSERT_EQ(scene_of(scene).warnings.size(), 1U);
-  EXPECT_EQ(
-      scene_of(scene).warnings[0],
-      "/model/meshes/0/material/poisson: found 0.45, at which full tetrahedra can hardly bend; \"element\": "
-      "\"mean_dilatation\" can");
-  mesh["element"] = "mean_dilatation";
-  EXPECT_TRUE(scene_of(scene).warnings.empty());
 }
 
 // ---- damage ---------------------------------------------------------------------------------------------

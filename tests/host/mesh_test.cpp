@@ -224,32 +224,6 @@ TEST_P(MeshKinds, AreThoseOfABox) {
   }
 }
 
-// The same scene with a box, and with its mesh in a file: a drop with friction, in a run of the whole host.
-TEST(Mesh, FallsLikeABox) {
-  const MeshFile file(box_mesh({3, 2, 2}, {0.3, 0.2, 0.1}, false));
-  const std::string material =
-      R"("material": {"type": "neo_hookean", "young": 1e6, "poisson": 0.3, "density": 1000},
-    "velocity": [0.7, 0, -1])";
-  const std::string rest = R"(, "time": {"cfl": 0.77, "end": 0.02},
-    "interfaces": [{"law": "coulomb", "nodes": "b.z_min", "parameters": {"friction": 0.3},
-                    "obstacle": {"type": "plane", "point": [0, 0, -0.001], "normal": [0, 0, 1]}}]})";
-  Scene box = scene_of(R"({"model": {"type": "blocks", "blocks": [{"name": "b", "size": [0.3, 0.2, 0.1],
-    "elements": [3, 2, 2], )" +
-                       material + "}]}" + rest);
-  Scene mesh = scene_of(R"({"model": {"type": "solids", "meshes": [{"name": "b", "file": ")" +
-                        file.path().string() + "\", " + material + "}]}" + rest);
-  ASSERT_EQ(mesh.steps, box.steps);
-  Integrator a = integrator_of(box), b = integrator_of(mesh);
-  for (std::int64_t n = 0; n < box.steps; ++n) {
-    a.step();
-    b.step();
-  }
-  EXPECT_LT(b.energy().balance_error, 1e-12);
-  EXPECT_NE(b.interface_work(), 0.0);
-  EXPECT_LT((b.displacement() - a.displacement()).norm(), 1e-10 * a.displacement().norm());
-  EXPECT_LT((b.velocity() - a.velocity()).norm(), 1e-9 * a.velocity().norm());
-}
-
 // ---- near incompressibility -----------------------------------------------------------------------------
 
 Dofs at_rest(const Solids& model, const Dofs& load, const std::vector<bool>& held) {

@@ -1,6 +1,7 @@
 # Every mistake of refusals.json is answered with code 2 and the words that stand there: the JSON pointer, what was
 # found and what is allowed. A row is what is put into its scene, at JSON pointers ("-": what is taken out), or a
-# command, and the answer. With ILAW_TEST_ACCEPT=1 the answers of today are written into the table, where a review
+# command, and the answer; then what files beside the scene hold: a text, or what stands for what in the text that the
+# "files" of the group give. With ILAW_TEST_ACCEPT=1 the answers of today are written into the table, where a review
 # of the change judges them.
 import copy
 import itertools
@@ -51,7 +52,8 @@ def answer(arguments, folder):
     done = subprocess.run([os.environ["ILAW_PROGRAM"], *arguments], cwd=folder, capture_output=True, text=True,
                           env=ENVIRONMENT, check=False)
     said = done.stderr.removeprefix("ilaw: ").removeprefix("scene.json: ").rstrip("\n")
-    for here, anywhere in [(r"/\S*/lib/ilaw/", ""), (r"one of: /.*", "one of: ..."),
+    for here, anywhere in [(rf"{folder}/", ""), (r"/\S*/lib/ilaw/", ""), (r"one of: /[^;]*", "one of: ..."),
+                           (r"libraries found: [^;\n]*", "libraries found: ..."),
                            (r"[\d.]+ GB that this", "... GB that this")]:
         said = re.sub(here, anywhere, said)
     return done.returncode, said
@@ -84,6 +86,9 @@ class Refusals(unittest.TestCase):
                 for row in group["refused"]:
                     if row in exact[1:]:
                         continue
+                    files = group.get("files", {})
+                    for file, text in {**files, **(row[2] if len(row) > 2 else {})}.items():
+                        (folder / file).write_text(text if isinstance(text, str) else files[file].replace(*text, 1))
                     if isinstance(row[0], str):
                         arguments = row[0].split()
                     else:
@@ -92,6 +97,18 @@ class Refusals(unittest.TestCase):
                     self.judge(row, arguments, folder)
         if os.environ.get("ILAW_TEST_ACCEPT"):
             TABLE.write_text(written(table))
+
+    def test_values_nested_too_deep_are_told_where_they_are(self):
+        """100000 deep, no reader can go into values by recursion."""
+        for depth in (65, 100000):
+            nested = {"": depth * "[" + depth * "]", "interfaces": depth * "[" + depth * "]",
+                      "model": 65 * '{"a": ' + "1" + 65 * "}"}
+            for key, text in nested.items():
+                with tempfile.TemporaryDirectory() as name:
+                    folder = pathlib.Path(name)
+                    (folder / "scene.json").write_text(f'{{"time": {{"dt": 1e-3}}, "{key}": {text}}}' if key else text)
+                    row = [key, f"/{key}: values are nested more than 64 deep, expected at most that"]
+                    self.judge(row, ["run", "scene.json", "--out", "OUT"], folder)
 
 
 def written(table):

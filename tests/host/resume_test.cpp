@@ -71,6 +71,18 @@ TEST(Resume, GoesOnWithOtherColumns) {
   EXPECT_FALSE(fs::exists(folder / "history.until_step_500.csv"));
 }
 
+TEST(Resume, RefusesOtherPointsInATable) {
+  json scene =
+      json::parse(R"({"model": {"type": "points", "dimension": 1, "points": "points.csv"}, "interfaces": [],
+      "time": {"dt": 0.1, "end": 2}})");
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "points.csv") << "mass,area,x0,v0\n1,1,0,1\n";
+  ASSERT_EQ(run_scene(scene, folder, "--checkpoint-every 10").code, 0);
+  ASSERT_EQ(run_scene(scene, folder, "--resume").code, 0);
+  std::ofstream(folder / "points.csv", std::ios::app) << "1,1,1,0\n";
+  EXPECT_THAT(run_scene(scene, folder, "--resume"), Exits(2, HasSubstr("is of other meshes or points")));
+}
+
 // Sums go on when columns change, but not those that nobody asked for before, of which a warning tells in
 // this run and in those that go on from it.
 TEST(Resume, KeepsSumsWithOtherColumns) {

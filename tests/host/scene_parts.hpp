@@ -52,9 +52,6 @@ inline json named(const char* name, json part) {
   part["name"] = name;
   return part;
 }
-inline json shock(const json& nodes, double time, const json& impulse) {
-  return {{"type", "shock"}, {"nodes", nodes}, {"time", time}, {"impulse", impulse}};
-}
 inline json gravity(const Numbers& acceleration) {
   return {{"type", "gravity"}, {"acceleration", acceleration}};
 }
@@ -84,18 +81,6 @@ inline json until(double end, double dt, json scene) {
 inline json until_at_cfl(double end, double cfl, json scene) {
   scene["time"] = {{"cfl", cfl}, {"end", end}};
   return scene;
-}
-
-// A point of mass 1 on a floor, under its weight of 10, until 0.2.
-inline json resting_point(const char* law, const json& parameters, double h) {
-  json made = until(
-      0.2, h,
-      scene_of_points(
-          {point(1, {0, 0})},
-          {named("floor", law_on({0}, ground(2), law, parameters.is_null() ? json::object() : parameters))},
-          {named("weight", gravity({0, -10}))}));
-  made["output"] = json::parse(R"({"watch": [0], "forces": ["floor", "weight"], "events": true})");
-  return made;
 }
 
 }  // namespace ilaw::host::testing

@@ -4,6 +4,7 @@
 #include "stress/random_parts.hpp"
 #include "stress/shrink.hpp"
 #include "stress/stress.hpp"
+#include "support/sizes.hpp"
 
 namespace ilaw::host::testing {
 namespace {
@@ -61,27 +62,6 @@ TEST(SceneThatFailed, IsStableWhereNothingIsPutIn) {
   EXPECT_EQ(verdict.ending, StressEnding::passed) << verdict.reason;
 }
 
-// A contact and a bond push each other up to 1e15 times what they agree on: v keeps nothing of that.
-TEST(CoupledContacts, KeepNoRoundingOfWhatWasLargeOnTheWay) {
-  auto [scene, integrator] = run_to_end(read_scene(scene_that_failed("large_on_the_way"), "scene.json"));
-  EXPECT_GT(integrator.tally().sweeps_max, 20);
-  EXPECT_EQ(integrator.tally().unconverged, 0);
-  const EnergyReport energy = integrator.energy();
-  EXPECT_LE(std::abs(energy.balance_error), 1e-13 * energy.scale);
-}
-
-// Three nodes that are not coupled, each between a bond and a floor that pulls it off: their impulses climb
-// from kink to kink.
-TEST(CoupledContacts, AreSolvedWhateverNodesElsewhereDo) {
-  auto [scene, integrator] =
-      run_to_end(read_scene(scene_that_failed("bonds_and_a_rising_floor"), "scene.json"));
-  EXPECT_EQ(integrator.tally().unconverged, 0);
-  EXPECT_GT(integrator.tally().sweeps_max, 30) << "iterations over all contacts";
-  EXPECT_LE(integrator.tally().coupling_residual_max, 1e-8) << "rounding of impulses at the limit of a bond";
-  const EnergyReport energy = integrator.energy();
-  EXPECT_LE(std::abs(energy.reaction_work), 1e-8 * energy.scale);
-}
-
 class LawsThatContradict : public ::testing::TestWithParam<const char*> {};
 
 // A node that cannot do what both of its laws want: the run ends there, and says so, instead of
@@ -132,89 +112,12 @@ TEST(CoupledContacts, AreSolvedInARoughWedge) {
   EXPECT_LE(integrator.tally().coupling_energy, 1e-3 * energy.scale);
 }
 
-// Five bonds between masses of 1:6e3 that soften are not solved: nothing says that they contradict each
-// other.
-TEST(CoupledContacts, ThatAreNotSolvedAreToldFromLawsThatContradict) {
-  const StressVerdict verdict = stress_scene(scene_that_failed("pile_of_bonds"));
-  EXPECT_EQ(verdict.ending, StressEnding::stopped);
-  EXPECT_THAT(verdict.reason, Not(HasSubstr("push against each other")));
-  EXPECT_THAT(verdict.reason, HasSubstr("no common solution, or it is not found"));
-  EXPECT_THAT(verdict.reason, HasSubstr("4 contacts are coupled, with masses of 1:6.1e+03"));
-}
-
-// Far out edges of facets vanish beside positions, and lengths overflow: the motion is to blame, not the law
-// that is given no normal. So it is where a sphere has no gap.
-TEST(MotionThatDiverged, IsToldWhereNoNormalCanBeFound) {
-  json scene = json::parse(R"({"model": {"type": "blocks", "blocks": [
-      {"name": "b", "corner": [0, 0, 0], "size": [1, 1, 1], "elements": [2, 2, 2], "velocity": [0.1, 0.2, -1],
-       "material": {"type": "linear", "young": 100, "poisson": 0.3, "density": 1}},
-      {"name": "c", "corner": [-0.2, -0.2, -1], "size": [1.5, 1.5, 1], "elements": [2, 2, 2],
-       "material": {"type": "linear", "young": 100, "poisson": 0.3, "density": 1}}]},
-      "time": {"dt": 0.06, "end": 60},
-      "interfaces": [{"law": "contact", "nodes": "b.z_min", "against": {"surface": "c.z_max"}}]})");
-  const StressVerdict mesh = stress_scene(scene);
-  EXPECT_THAT(mesh.reason, HasSubstr("the motion diverged: the kinetic energy is "));
-  EXPECT_THAT(mesh.reason, HasSubstr("the critical step is "));
-
-  scene = json::parse(R"({"model": {"type": "points", "dimension": 2, "points": [
-      {"mass": 1, "position": [2, 0], "velocity": [1e150, 0]}]}, "time": {"dt": 1e10, "end": 1e11},
-      "interfaces": [{"law": "contact", "nodes": "all",
-                      "obstacle": {"type": "sphere", "center": [0, 0], "radius": 1}}]})");
-  const StressVerdict sphere = stress_scene(scene);
-  EXPECT_THAT(sphere.reason, HasSubstr("the motion diverged: displacement 1e+160 at node 0, step 1,"));
-}
-
-// The message has the causes of the limit: H, area and step, which the law's page puts into a formula. Half
-// the step that it gives is solved.
-TEST(BondWithSeveralSolutions, IsToldWithWhatLimitsTheStep) {
-  const double area = 3.0, mass = 2.0, slope = 0.5;  // from 1 at the opening 1 to 0 at 3
-  const double longest = 2.0 / std::sqrt(3.0 / mass * area * slope);
-  const auto reason = [&](double dt) {
-    const json scene = {
-        {"model",
-         {{"type", "points"},
-          {"dimension", 1},
-          {"points", {{{"mass", mass}, {"area", area}, {"position", {0}}}}}}},
-        {"time", {{"dt", dt}, {"end", 3 * dt}}},
-        {"loads", {{{"type", "shock"}, {"nodes", {0}}, {"time", 1.5 * dt}, {"impulse", {8.6}}}}},
-        {"interfaces",
-         {{{"law", "cohesive"},
-           {"parameters", {{"strength", 1.0}, {"toughness", 1.5}, {"stiffness", 1.0}}},
-           {"nodes", "all"},
-           {"obstacle", {{"type", "plane"}, {"point", {0}}, {"normal", {1}}}}}}}};
-    return stress_scene(scene).reason;
-  };
-  EXPECT_EQ(reason(0.5 * longest), "");
-  EXPECT_THAT(
-      reason(4.0),
-      HasSubstr("first node 0 (H = 0.5, area 3, step 4): the law's equations have several solutions"));
-}
-
 // Shear is weighed by the ratio of strengths, which two infinite ones do not have: it was found in the first
 // step, by an overflow.
 TEST(SceneThatFailed, IsRefusedBeforeTheRunWhereItsLawMakesNoSense) {
   const StressVerdict verdict = stress_scene(scene_that_failed("rigid_bond_of_infinite_strength"));
   EXPECT_EQ(verdict.ending, StressEnding::refused);
   EXPECT_THAT(verdict.reason, HasSubstr("parameter 'strength' must be finite"));
-}
-
-// A step beyond the critical one does not end as if it were right: it is refused where the limit is known,
-// and else warned of, and diverges with a message.
-TEST(StepBeyondTheCriticalOne, IsRefusedOrDivergesWithAMessage) {
-  json scene = scene_that_failed("rebound_at_the_critical_step");
-  scene["time"]["cfl"] = 1.01;
-  const StressVerdict refused = stress_scene(scene);
-  EXPECT_EQ(refused.ending, StressEnding::refused);
-  EXPECT_THAT(refused.reason, HasSubstr("/time/cfl"));
-
-  scene = json::parse(R"({"model": {"type": "blocks", "blocks": [{"name": "b", "size": [1, 1, 1],
-      "elements": [2, 2, 2], "velocity": [0.1, 0.2, -0.3],
-      "material": {"type": "linear", "young": 100, "poisson": 0.3, "density": 1}}]}, "time": {"dt": 1, "end": 1000},
-      "interfaces": [{"law": "contact", "nodes": "b.z_min",
-                      "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})");
-  const StressVerdict diverged = stress_scene(scene);
-  EXPECT_EQ(diverged.ending, StressEnding::stopped);
-  EXPECT_THAT(diverged.reason, HasSubstr("the motion diverged"));
 }
 
 // Parameters of every law, whatever it is called: within the limits that it gives, and all of them
@@ -454,7 +357,7 @@ TEST(Stress, NamesWhereALawMadeEnergy) {
 class RandomScenes : public ::testing::TestWithParam<bool> {};
 TEST_P(RandomScenes, FulfilTheInvariants) {
   StressSetup setup;
-  setup.scenes = 84;
+  setup.scenes = ilaw::testing::part_of(168);
   setup.size = {4000, 1000, GetParam()};
   const StressReport report = stress(setup, [](std::int64_t) {});
   std::int64_t node_steps = 0, ran = 0, stopped = 0;
@@ -464,9 +367,9 @@ TEST_P(RandomScenes, FulfilTheInvariants) {
     stopped += row.stopped;
     EXPECT_LE(row.worst.worst_bound, 1.0) << row.law;
   }
-  EXPECT_GT(node_steps, 10'000'000);
-  EXPECT_GT(ran, 60);
-  EXPECT_LE(stopped, 4);  // without a solution, or beyond the limit of a spring
+  EXPECT_GT(node_steps, 100'000 * setup.scenes);
+  EXPECT_GT(ran, 0.7 * setup.scenes);
+  EXPECT_LE(stopped, 0.05 * setup.scenes);  // without a solution, or beyond the limit of a spring
   for (const StressFinding& failure : report.failures)
     ADD_FAILURE() << failure.law << ", seed " << failure.seed << ": " << failure.reason;
 }

@@ -3,6 +3,7 @@
 // each other.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/coupled_problem.hpp"
+#include "support/sizes.hpp"
 
 namespace ilaw::testing {
 namespace coupled_impacts {
@@ -286,12 +287,13 @@ struct Drop : CoupledProblem {
 class CoupledDrops : public ::testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(CoupledDrops, IntoGroovesComeToRestAndGainNoEnergy) {
-  int unsolved = 0;
+  int unsolved = 0, number = 0;
   for (const double ratio : {1.0, 3.0, 10.0, 100.0})
     for (const double mu : {0.1, 0.5, 1.0, 2.0})
       for (const double e : {0.0, 0.5, 1.0})
         for (const auto& [height, aside] :
              {std::pair{1e-9, 0.0}, {1e-3, 0.0}, {0.1, 1e-3}, {0.3, -0.01}, {0.7, 0.05}, {1.0, -0.2}}) {
+          if (!is_in_part(number++)) continue;
           GIVEN(ratio, mu, e, height, aside);
           Drop drop(ratio, mu, e, height, aside);
           drop.options.most_sweeps = GetParam();
@@ -307,7 +309,7 @@ TEST_P(CoupledDrops, IntoGroovesComeToRestAndGainNoEnergy) {
           EXPECT_LE(most - start, fall * fall + 2e-9 * Drop::g);
           EXPECT_LE(rest, 100.0);
         }
-  std::printf("grooves: %d of 288 drops with unsolved steps\n", unsolved);
+  std::printf("grooves: %d drops with unsolved steps\n", unsolved);
 }
 INSTANTIATE_TEST_SUITE_P(Sweeps, CoupledDrops, ::testing::Values(15U, 1000U));
 

@@ -7,6 +7,7 @@
 #include "stress/made_problem.hpp"
 
 #include "support/coupled_problem.hpp"
+#include "support/sizes.hpp"
 
 #include <chrono>
 #include <memory>
@@ -119,7 +120,9 @@ class MadeOf : public ::testing::TestWithParam<Kind> {};
 
 TEST_P(MadeOf, IsSolvedInTheScaleOfItsInput) {
   const Kind& kind = GetParam();
-  const int first_seed = number("ILAW_MADE_SEED", 1), problems = number("ILAW_MADE_PROBLEMS", 24);
+  const bool is_large = kind.setup.contacts > 100;
+  const int first_seed = number("ILAW_MADE_SEED", 1),
+            problems = number("ILAW_MADE_PROBLEMS", is_large ? part_of(24) : 24);
   const bool prints = std::getenv("ILAW_MADE_PRINTS") != nullptr;
   Counts counts;
   ilaw::coupled solver;

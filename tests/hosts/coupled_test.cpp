@@ -5,9 +5,7 @@
 #include "support/coupled_problem.hpp"
 #include "support/program.hpp"
 
-#include <barrier>
 #include <functional>
-#include <thread>
 
 namespace ilaw::testing {
 namespace {
@@ -89,140 +87,6 @@ TEST(Coupled, GapOfRoundingIsNone) {
     solve(point, 1e-10);
     EXPECT_EQ(point.body[0].v[2], gap > 1e-15 ? -1e-2 : 0.0) << gap;
   }
-}
-
-// ---- ranks -----------------------------------------------------------------------------------------------
-
-// Two ranks as two threads: each has its own bodies first and those of the other as copies behind.
-struct Rank {
-  struct Board {
-    std::barrier<> meet{2};
-    std::vector<double> posted[2];
-  };
-  Board* board;
-  int number;
-  std::vector<std::size_t> local = {};  // of a body's number
-
-  std::vector<double> other(std::vector<double> mine) {
-    board->posted[number] = std::move(mine);
-    board->meet.arrive_and_wait();
-    std::vector<double> read = board->posted[1 - number];
-    board->meet.arrive_and_wait();
-    return read;
-  }
-  template <class By>
-  static void combine(void* context, double* values, std::int64_t count, By by) {
-    const std::vector<double> read = static_cast<Rank*>(context)->other({values, values + count});
-    for (std::size_t i = 0; i < read.size(); ++i) values[i] = by(values[i], read[i]);
-  }
-  // Both number all bodies, so that what the other posts has the same ones.
-  static void sum_bodies(void* context, double* values, std::int64_t components) {
-    Rank& self = *static_cast<Rank*>(context);
-    const auto width = static_cast<std::size_t>(components);
-    std::vector<double> sorted;
-    for (const std::size_t at : self.local)
-      sorted.insert(sorted.end(), values + width * at, values + width * (at + 1));
-    const std::vector<double> read = self.other(sorted);
-    for (std::size_t i = 0; i < read.size(); ++i)
-      values[width * self.local[i / width] + i % width] = sorted[i] + read[i];
-  }
-  ilaw_exchange exchange() {
-    ilaw_exchange made{};
-    made.struct_size = sizeof made;
-    made.context = this;
-    made.sum_bodies = sum_bodies;
-    made.largest = [](void* c, double* v, std::int64_t n) {
-      combine(c, v, n, [](double a, double b) { return std::max(a, b); });
-    };
-    made.sum = [](void* c, double* v, std::int64_t n) { combine(c, v, n, std::plus<>()); };
-    return made;
-  }
-};
-
-struct Found {
-  std::vector<Vector> motion;  // velocities and spins by the numbers of bodies
-  ilaw_coupled_report report{};
-};
-
-// The rank's share of a problem: the contacts whose body it owns.
-void run_rank(Rank rank, const CoupledProblem& whole, ilaw::interface law, Found& found) {
-  const auto count = static_cast<std::int32_t>(whole.body.size()), half = std::int32_t{11};
-  CoupledProblem part(std::move(law), whole.form);
-  rank.local.resize(whole.body.size());
-  for (std::int32_t i = 0; i < count; ++i) {
-    const std::int32_t number = rank.number == 0 ? i : (i + half) % count;
-    rank.local[static_cast<std::size_t>(number)] = static_cast<std::size_t>(part.add_body(whole.at(number)));
-  }
-  const auto here = [&](std::int32_t i) {
-    return i < 0 ? i : static_cast<std::int32_t>(rank.local[static_cast<std::size_t>(i)]);
-  };
-  for (std::size_t k = 0; k < whole.contact.size(); ++k)
-    if ((whole.ends[k] < half) == (rank.number == 0))
-      part.add(here(whole.ends[k]), here(whole.other_ends[k]), whole.contact[k]);
-  const ilaw_exchange exchange = rank.exchange();
-  part.options.tolerance = 1e-11;
-  part.options.exchange = &exchange;
-  ilaw_bodies bodies = part.bodies();
-  bodies.owned_count = rank.number == 0 ? half : count - half;
-  const ilaw_batch batch = part.batch();
-  found.report = part.solver.solve(bodies, part.contacts(batch), part.options);
-  for (const std::size_t at : rank.local) found.motion.push_back(part.body[at].v);
-  for (const std::size_t at : rank.local) found.motion.push_back(part.body[at].w);
-}
-
-void expect_ranks_agree(ilaw::interface (*law)(),
-                        const std::function<CoupledProblem(ilaw::interface)>& problem) {
-  const auto made = [&] {
-    CoupledProblem one = problem(law());
-    Body alone;
-    alone.v = {1.0, 2.0, 3.0}, alone.w = {0.5, 0.5, 0.5};
-    one.add_body(alone);
-    for (Body& body : one.body) body.v_before = body.v, body.w_before = body.w;
-    return one;
-  };
-  CoupledProblem whole = made();
-  const CoupledProblem start = made();
-  const ilaw_coupled_report alone = solve(whole, 1e-11);
-  Rank::Board board;
-  Found found[2];
-  std::thread second(run_rank, Rank{&board, 1}, std::cref(start), law(), std::ref(found[1]));
-  run_rank(Rank{&board, 0}, start, law(), found[0]);
-  second.join();
-  EXPECT_EQ(found[0].motion, found[1].motion) << "copies differ from what their owners have";
-  for (std::size_t i = 0; i < whole.body.size(); ++i) {
-    EXPECT_THAT(found[0].motion[i], VectorNear(whole.body[i].v, 1e-9));
-    EXPECT_THAT(found[0].motion[whole.body.size() + i], VectorNear(whole.body[i].w, 1e-9));
-  }
-  EXPECT_LE(alone.residual, 1e-11);
-  EXPECT_LE(found[0].report.residual, 1e-11);
-  EXPECT_EQ(found[0].report.sweeps, found[1].report.sweeps);
-  EXPECT_EQ(found[0].report.residual, found[1].report.residual);
-  EXPECT_NEAR(found[0].report.work + found[1].report.work, alone.work, 1e-9 * std::fabs(alone.work));
-}
-
-TEST(CoupledRanks, AgreeToTheTolerance) {
-  expect_ranks_agree(
-      +[] { return friction(0.4); },
-      [](ilaw::interface law) { return cube(std::move(law), ILAW_DELASSUS_FULL, 11); });
-  expect_ranks_agree(
-      +[] { return rolling_law(); },
-      [](ilaw::interface law) { return cube(std::move(law), ILAW_DELASSUS_TRANSVERSE_SPIN, 11); });
-}
-
-// A chain that hangs, of bonds of which some break and shed their load on others across the border.
-TEST(CoupledRanks, BreakTheSameBonds) {
-  expect_ranks_agree(
-      +[] {
-        return coupled_law("tie", ILAW_DELASSUS_FULL, {{"strength", 4.0}});
-      },
-      [](ilaw::interface law) {
-        CoupledProblem chain_of_grains(std::move(law), ILAW_DELASSUS_FULL);
-        Random random(11);
-        std::vector<Body> grains(27);
-        for (Body& one : grains) one.v = random.vector();
-        stack(chain_of_grains, grains);
-        return chain_of_grains;
-      });
 }
 
 // ---- what the report says ---------------------------------------------------------------------------------
@@ -660,8 +524,8 @@ struct Walls : CoupledProblem {
 };
 
 // Newton's restitution: u_n >= -e u_n^- and r_n >= 0, one of them an equality (Moreau 1988), where u is
-// relative to the wall of each contact. A contact that was opening turns round at most (kit/contact.hpp). The
-// work of an impulse is r.(u^- + u)/2 with these velocities.
+// relative to the wall of each contact. A contact that was opening turns round at most (kit/friction.hpp).
+// The work of an impulse is r.(u^- + u)/2 with these velocities.
 TEST(CoupledWalls, ReboundFromTheirOwnVelocities) {
   constexpr double e = 0.6;
   for (const Kind kind : kinds) {

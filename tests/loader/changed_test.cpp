@@ -7,7 +7,6 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 
-#include <memory>
 #include <string>
 
 namespace {
@@ -27,22 +26,9 @@ class Changed : public testing::Test {
   }
 
   TemporaryFolder folder;
-  const fs::path file = fs::canonical(folder.path) / "law.so";
-  const std::string changed = file.string() + ": changed since it was opened: ",
-                    size = std::to_string(bytes_of(1).size()) + " bytes",
-                    until =
-                        ", expected the file of " + size + " until its last handle and interface are closed";
+  const fs::path file = folder.path / "law.so";
+  const std::string changed = file.string() + ": changed since it was opened: ";
 };
-
-TEST_F(Changed, RefusesUntilTheOldOneIsGone) {
-  install(file, 1);
-  auto old = std::make_unique<ilaw::library>(file.string());
-  install(file, 2);
-  EXPECT_EQ(answer(file), changed + "another file of " + size + " took its place" + until);
-  EXPECT_STREQ(old->law("zero")->title, "Number 1");
-  old.reset();
-  EXPECT_EQ(answer(file), "Number 2");
-}
 
 // dlclose leaves it loaded, and dlopen would give it again by its path.
 TEST_F(Changed, RefusesWhenTheOldOneStaysLoaded) {
@@ -91,7 +77,7 @@ TEST_F(Changed, RefusesFilesThatAllMayWrite) {
 
 // Where every user may rename a folder, he may put his own in its place.
 TEST_F(Changed, SearchesNoFolderBelowAWritableOne) {
-  const fs::path top = fs::canonical(folder.path), in = top / "deep" / "in", link = top / "link";
+  const fs::path top = folder.path, in = top / "deep" / "in", link = top / "link";
   fs::create_directories(in);
   fs::create_directory_symlink(in, link);
   install(in / "law.so", 1);

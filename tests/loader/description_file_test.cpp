@@ -3,42 +3,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ilaw/loader.hpp>
 
-#include "support/matchers.hpp"
+#include "support/program.hpp"
 
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <sstream>
 #include <string>
 
 namespace {
 
 using namespace ilaw::testing::matchers;
+using namespace ilaw::testing::programs;
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-std::string content_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-int run(const std::string& command) { return WEXITSTATUS(std::system(command.c_str())); }
 
 // A folder with a library of tests/loader/plugins, and "law.json" beside it where a test writes one.
 class DescriptionFile : public testing::Test {
  protected:
-  DescriptionFile() {
-    std::string name = (fs::temp_directory_path() / "ilaw_description_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no folder");
-    folder = fs::canonical(name);
-    take("good");
-  }
-  ~DescriptionFile() override { fs::remove_all(folder); }
+  DescriptionFile() { take("good"); }
 
   void take(const std::string& variant) {
     fs::copy_file(ILAW_TEST_PLUGINS "/" + variant + ".so", library(), fs::copy_options::overwrite_existing);
@@ -46,37 +30,32 @@ class DescriptionFile : public testing::Test {
   std::string library() const { return (folder / "law.so").string(); }
   std::string file() const { return (folder / "law.json").string(); }
   void write(const std::string& text) const { std::ofstream(file(), std::ios::binary) << text; }
-  // The result of ilaw-describe; its messages go to the file "said".
-  int describe() const {
-    return run(ILAW_HOSTS "/ilaw-describe " + library() + " 2>" + (folder / "said").string());
-  }
-  std::string said() const { return content_of(folder / "said"); }
+  Outcome describe() const { return run_command(ILAW_HOSTS "/ilaw-describe " + library()); }
   json written() {
-    EXPECT_EQ(describe(), 0) << said();
-    return json::parse(content_of(file()));
+    EXPECT_THAT(describe(), Exits(0, ""));
+    return json::parse(text_of(file()));
   }
 
   // Messages of reading the description and of opening the library; empty where they do not refuse it.
-  std::string reading() const {
+  template <class Work>
+  static std::string refusal_of(const Work& work) {
     try {
-      ilaw::read_description(library());
+      work();
       return "";
     } catch (const ilaw::error& error) {
       EXPECT_EQ(error.code(), ILAW_BAD_LIBRARY);
       return error.what();
     }
+  }
+  std::string reading() const {
+    return refusal_of([&] { ilaw::read_description(library()); });
   }
   std::string opening() const {
-    try {
-      const ilaw::library opened(library());
-      return "";
-    } catch (const ilaw::error& error) {
-      EXPECT_EQ(error.code(), ILAW_BAD_LIBRARY);
-      return error.what();
-    }
+    return refusal_of([&] { const ilaw::library opened(library()); });
   }
 
-  fs::path folder;
+  const TemporaryFolder made;
+  const fs::path& folder = made.path;
 };
 
 TEST_F(DescriptionFile, HoldsAllThatTheLibrarySays) {
@@ -120,10 +99,10 @@ TEST_F(DescriptionFile, MayBeAScene) {
     write(scene);
     EXPECT_EQ(ilaw::read_description(library()), "") << scene;
     EXPECT_EQ(opening(), "") << scene;
-    EXPECT_EQ(describe(), 1) << scene;
-    EXPECT_EQ(said(),
-              "ilaw-describe: " + file() + ": the file is there and is no description of a library\n");
-    EXPECT_EQ(content_of(file()), scene);
+    EXPECT_THAT(describe(), Exits(1, "ilaw-describe: " + file() +
+                                         ": the file is there and is no description of a library\n"))
+        << scene;
+    EXPECT_EQ(text_of(file()), scene);
   }
 }
 
@@ -156,8 +135,7 @@ TEST_F(DescriptionFile, MustSayWhatTheLibrarySays) {
 
 TEST_F(DescriptionFile, MayTellMoreOfANewerLibrary) {
   take("newer_minor");
-  EXPECT_EQ(describe(), 1);
-  EXPECT_THAT(said(), HasSubstr("ABI 1.5, expected at most 1.0: use a newer ilaw-describe"));
+  EXPECT_THAT(describe(), Exits(1, HasSubstr("ABI 1.5, expected at most 1.0: use a newer ilaw-describe")));
   json newer = json::parse(ilaw::library(library()).describe());
   newer["laws"][0]["spins"] = true;
   newer["laws"][0]["dimensions"].push_back("4");
@@ -230,8 +208,8 @@ TEST_F(DescriptionFile, IsWrittenAnewAfterAChange) {
 TEST_F(DescriptionFile, IsNotWrittenForABrokenLibrary) {
   written();
   take("null_title");
-  EXPECT_EQ(describe(), 1);
-  EXPECT_EQ(said(), "ilaw-describe: " + library() + ": law 'zero': title is null, expected a text\n");
+  EXPECT_THAT(describe(),
+              Exits(1, "ilaw-describe: " + library() + ": law 'zero': title is null, expected a text\n"));
   EXPECT_FALSE(fs::exists(file()));
 }
 

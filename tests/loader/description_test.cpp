@@ -134,16 +134,10 @@ const Fault faulty_descriptions[] = {
     {"LawTwice", [](Description& d) { d.plugin.law_count = 2; }, "law 'bond' is declared twice"},
     {"SmallLaw", [](Description& d) { d.law.struct_size = 120; },
      "law 0: law has struct_size 120, expected at least 160 and at most 4096"},
-    {"NoEvaluate", [](Description& d) { d.law.evaluate = nullptr; },
-     "law 'bond': function 'evaluate' is null, expected a function"},
     {"TitleNowhere", [](Description& d) { d.law.title = static_cast<const char*>(no_address); },
      "law 'bond': title is no readable text of at most 64 KiB"},
-    {"Overlong", [](Description& d) { d.law.title = "\xc0\xaf"; },
-     "law 'bond': title has bytes that are no UTF-8 or control characters"},
     {"ManyParameters", [](Description& d) { d.law.parameter_count = 4000000000U; },
      "law 'bond': parameters has 4000000000 entries, expected at most 10000"},
-    {"UnknownForm", [](Description& d) { d.law.delassus_forms = 65; },
-     "law 'bond': delassus_forms is 65, expected only the bits of 31"},
     {"DefaultAbove", [](Description& d) { d.number.default_value = 2.0; },
      "law 'bond': parameter 'strength': default 2 lies outside its own range"},
     {"NoVendor", [](Description& d) { d.plugin.vendor = nullptr; }, "vendor is null, expected a text"},
@@ -155,10 +149,6 @@ const Fault faulty_descriptions[] = {
      "laws points to memory that cannot be read"},
     {"HugeLaw", [](Description& d) { d.law.struct_size = 4097; },
      "law 0: law has struct_size 4097, expected at least 160 and at most 4096"},
-    {"NoDimension", [](Description& d) { d.law.dimensions = 0; },
-     "law 'bond': dimensions is 0, expected at least one of the bits of 14"},
-    {"NoForm", [](Description& d) { d.law.delassus_forms = 0; },
-     "law 'bond': delassus_forms is 0, expected at least one of the bits of 31"},
     {"SpinsInThePlane",
      [](Description& d) {
        d.law.delassus_forms = ILAW_DELASSUS_TRANSVERSE_SPIN;
@@ -167,26 +157,6 @@ const Fault faulty_descriptions[] = {
      "law 'bond': delassus_forms has spins, expected dimension 3 among dimensions"},
     {"ParameterWithoutSpins", [](Description& d) { d.number.flags |= ILAW_FLAG_NEEDS_SPINS; },
      "law 'bond': parameter 'strength' needs spins, expected a form with spins among delassus_forms"},
-    {"NoFrame", [](Description& d) { d.law.frames = 0; },
-     "law 'bond': frames is 0, expected at least one of the bits of 3"},
-    {"UnknownFrame", [](Description& d) { d.law.frames = 4; },
-     "law 'bond': frames is 4, expected only the bits of 3"},
-    {"NoNumbers", [](Description& d) { d.law.numbers = 0; },
-     "law 'bond': numbers is 0, expected at least one of the bits of 3"},
-    {"UnknownNumbers", [](Description& d) { d.law.numbers = 7; },
-     "law 'bond': numbers is 7, expected only the bits of 3"},
-    {"UnknownCapability", [](Description& d) { d.law.capabilities = 8; },
-     "law 'bond': capabilities is 8, expected only the bits of 7"},
-    {"UnknownPermission", [](Description& d) { d.law.permissions = 4; },
-     "law 'bond': permissions is 4, expected only the bits of 3"},
-    {"ReservedOfALaw", [](Description& d) { d.law.reserved = 5; }, "law 'bond': reserved is 5, expected 0"},
-    {"ReservedOfTheLibrary", [](Description& d) { d.plugin.reserved = 1; }, "reserved is 1, expected 0"},
-    {"ReservedOfAParameter", [](Description& d) { d.number.reserved = 1; },
-     "law 'bond': parameter 'strength': reserved is 1, expected 0"},
-    {"ReservedOfAVariable", [](Description& d) { d.variable.reserved = 1; },
-     "law 'bond': state variable 'damage': reserved is 1, expected 0"},
-    {"ReservedOfAnAmount", [](Description& d) { d.amount.reserved = 1; },
-     "law 'bond': amount 'heat': reserved is 1, expected 0"},
     {"AmountTwice", [](Description& d) { d.law.amount_count = 2; },
      "law 'bond': amount 'heat' is declared twice"},
     {"AmountsNull", [](Description& d) { d.law.amounts = nullptr; },
@@ -202,36 +172,10 @@ const Fault faulty_descriptions[] = {
     {"AxisOfABadName", [](Description& d) { d.axes[0] = "Slip speed"; },
      "law 'bond': parameter 'strength': an axis is 'Slip speed', expected lower-case letters, digits "
      "and '_'"},
-    {"UnknownOutput", [](Description& d) { d.law.outputs = 1U << 20; },
-     "law 'bond': outputs is 1048576, expected only the bits of 7"},
-    {"EmptyId", [](Description& d) { d.law.id = ""; },
-     "law 0: id is '', expected lower-case letters, digits and '_'"},
-    {"IdOfADigit", [](Description& d) { d.law.id = "2bonds"; },
-     "law 0: id is '2bonds', expected lower-case letters, digits and '_'"},
-    {"IdWithBraces", [](Description& d) { d.law.id = "bond{}"; },
-     "law 0: id is 'bond{}', expected lower-case letters, digits and '_'"},
-    {"NoCreate", [](Description& d) { d.law.create = nullptr; },
-     "law 'bond': function 'create' is null, expected a function"},
-    {"NoDestroy", [](Description& d) { d.law.destroy = nullptr; },
-     "law 'bond': function 'destroy' is null, expected a function"},
-    {"NoInfo", [](Description& d) { d.law.info = nullptr; },
-     "law 'bond': function 'info' is null, expected a function"},
-    {"NoInitialise", [](Description& d) { d.law.initialise = nullptr; },
-     "law 'bond': function 'initialise' is null, expected a function"},
-    {"LinesInATitle", [](Description& d) { d.law.title = "two\nlines"; },
-     "law 'bond': title has bytes that are no UTF-8 or control characters"},
     {"LinesInADoc", [](Description& d) { d.law.doc = "two\n\tlines"; }, ""},
     {"BellInADoc", [](Description& d) { d.law.doc = "two\alines"; },
      "law 'bond': doc has bytes that are no UTF-8 or control characters"},
     {"LettersOfFourBytes", [](Description& d) { d.law.title = "\u00e9 \u20ac \U0001F600"; }, ""},
-    {"ControlOfTwoBytes", [](Description& d) { d.law.title = "\xc2\x9b[2J"; },
-     "law 'bond': title has bytes that are no UTF-8 or control characters"},
-    {"HalfOfAPair", [](Description& d) { d.law.title = "\xed\xa0\x80"; },
-     "law 'bond': title has bytes that are no UTF-8 or control characters"},
-    {"BeyondUnicode", [](Description& d) { d.law.title = "\xf4\x90\x80\x80"; },
-     "law 'bond': title has bytes that are no UTF-8 or control characters"},
-    {"LetterCutShort", [](Description& d) { d.law.title = "\xe2\x82"; },
-     "law 'bond': title has bytes that are no UTF-8 or control characters"},
     {"TextWithoutEnd",
      [](Description& d) {
        static const std::string endless(70000, 'a');
@@ -274,18 +218,88 @@ const Fault faulty_descriptions[] = {
      ""},
     {"NoChoices", [](Description& d) { d.choice.choice_count = 0; },
      "law 'bond': parameter 'surface': choice_count is 0, expected at least 1"},
-    {"DefaultBetweenChoices", [](Description& d) { d.choice.default_value = 0.5; },
-     "law 'bond': parameter 'surface': default 0.5 is no index of its choices"},
-    {"DefaultBelowChoices", [](Description& d) { d.choice.default_value = -1.0; },
-     "law 'bond': parameter 'surface': default -1 is no index of its choices"},
-    {"DefaultBeyondChoices", [](Description& d) { d.choice.default_value = 2.0; },
-     "law 'bond': parameter 'surface': default 2 is no index of its choices"},
     {"ChoiceNull", [](Description& d) { d.choices[1] = nullptr; },
      "law 'bond': parameter 'surface': a choice is null, expected a text"},
     {"VariableTwice", [](Description& d) { d.law.state_variable_count = 2; },
      "law 'bond': state variable 'damage' is declared twice"}};
 INSTANTIATE_TEST_SUITE_P(Library, FaultyDescription, ::testing::ValuesIn(faulty_descriptions),
                          [](const auto& drawn) { return drawn.param.name; });
+
+// Rules of several members: each by its name, and what each of them refuses.
+TEST(Description, HasKnownBitsOfEveryMask) {
+  const struct {
+    std::uint32_t ilaw_law::*mask;
+    std::string name, known;
+    bool needed;
+  } masks[] = {{&ilaw_law::dimensions, "dimensions", "14", true},
+               {&ilaw_law::delassus_forms, "delassus_forms", "31", true},
+               {&ilaw_law::frames, "frames", "3", true},
+               {&ilaw_law::numbers, "numbers", "3", true},
+               {&ilaw_law::inputs, "inputs", "63", false},
+               {&ilaw_law::outputs, "outputs", "7", false},
+               {&ilaw_law::capabilities, "capabilities", "7", false},
+               {&ilaw_law::permissions, "permissions", "3", false}};
+  for (const auto& [mask, name, known, needed] : masks) {
+    Description made;
+    const std::string at = "bonds.so: law 'bond': " + name + " is ";
+    made.law.*mask |= 1U << 20;
+    EXPECT_EQ(made.answer(), at + std::to_string(made.law.*mask) + ", expected only the bits of " + known);
+    made.law.*mask = 0;
+    EXPECT_EQ(made.answer(), needed ? at + "0, expected at least one of the bits of " + known : "");
+  }
+}
+
+TEST(Description, LeavesWhatIsReservedAtZero) {
+  Description d;
+  const std::string law = "law 'bond': ";
+  for (const auto& [reserved, where] : {std::pair{&d.plugin.reserved, std::string()},
+                                        {&d.law.reserved, law},
+                                        {&d.number.reserved, law + "parameter 'strength': "},
+                                        {&d.variable.reserved, law + "state variable 'damage': "},
+                                        {&d.amount.reserved, law + "amount 'heat': "}}) {
+    *reserved = 5;
+    EXPECT_EQ(d.answer(), "bonds.so: " + where + "reserved is 5, expected 0");
+    *reserved = 0;
+  }
+}
+
+TEST(Description, HasEveryFunction) {
+  const auto without = [](const char* name, auto ilaw_law::*function) {
+    Description made;
+    made.law.*function = nullptr;
+    EXPECT_EQ(made.answer(),
+              "bonds.so: law 'bond': function '" + std::string(name) + "' is null, expected a function");
+  };
+  without("create", &ilaw_law::create);
+  without("destroy", &ilaw_law::destroy);
+  without("info", &ilaw_law::info);
+  without("initialise", &ilaw_law::initialise);
+  without("evaluate", &ilaw_law::evaluate);
+}
+
+// Overlong, two lines, a control of two bytes, half of a pair, beyond Unicode, cut short.
+TEST(Description, HasTitlesAndNamesThatMayBePrinted) {
+  Description made;
+  for (const char* title :
+       {"\xc0\xaf", "two\nlines", "\xc2\x9b[2J", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82"}) {
+    made.law.title = title;
+    EXPECT_EQ(made.answer(), "bonds.so: law 'bond': title has bytes that are no UTF-8 or control characters");
+  }
+  for (const std::string id : {"", "2bonds", "bond{}"}) {
+    made.law.id = id.c_str();
+    EXPECT_EQ(made.answer(),
+              "bonds.so: law 0: id is '" + id + "', expected lower-case letters, digits and '_'");
+  }
+}
+
+TEST(Description, HasADefaultThatIsAnIndex) {
+  Description made;
+  for (const auto& [chosen, text] : {std::pair{0.5, "0.5"}, {-1.0, "-1"}, {2.0, "2"}}) {
+    made.choice.default_value = chosen;
+    EXPECT_EQ(made.answer(), std::string("bonds.so: law 'bond': parameter 'surface': default ") + text +
+                                 " is no index of its choices");
+  }
+}
 
 // ---- instances ------------------------------------------------------------------------------------------
 

@@ -5,8 +5,6 @@
 #include <elf.h>
 #include "support/program.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -50,29 +48,29 @@ Elf64_Phdr& last_loaded(Bytes& bytes) {
   return *last;
 }
 
+struct File : TemporaryFolder {
+  explicit File(const Bytes& bytes) {
+    std::ofstream(name, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  }
+  const std::string name = (path / "law.so").string();
+};
+
 // The code and message of opening those bytes, in a process of its own: some make the loader die.
 std::string answer_to(const Bytes& bytes) {
-  const std::string path = testing::TempDir() + "ilaw_elf_" + std::to_string(getpid()) + ".so";
-  std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  const std::string text = run_command(ILAW_HOSTS "/search_host " + path + "; echo status $?").output;
-  unlink(path.c_str());
-  return text;
+  return run_command(ILAW_HOSTS "/search_host " + File(bytes).name + "; echo status $?").output;
 }
 
 TEST(ElfFile, WholeOneIsOpened) { EXPECT_EQ(answer_to(whole_library()), "0\nstatus 0\n"); }
 
 // The loader's message on those bytes.
 std::string refusal_of(const Bytes& bytes) {
-  const std::string path = testing::TempDir() + "ilaw_refused_" + std::to_string(getpid()) + ".so";
-  std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  std::string said = "not refused";
+  const File file(bytes);
   try {
-    const ilaw::library library(path);
+    const ilaw::library library(file.name);
   } catch (const ilaw::error& error) {
-    said = error.what();
+    return error.what();
   }
-  unlink(path.c_str());
-  return said;
+  return "not refused";
 }
 
 // dlopen would refuse these, too, but not in these words.
@@ -90,6 +88,8 @@ TEST(ElfFile, IsRefusedInItsOwnWords) {
   } cases[] = {{"not an ELF file", [](Bytes& b) { b.resize(3); }},
                {"not an ELF file", [](Bytes& b) { b[1] = 'e'; }},
                {"truncated at 10 bytes", [](Bytes& b) { b.resize(10); }},
+               {"truncated at", [](Bytes& b) { b.resize(b.size() / 2); }},
+               {"truncated at", [](Bytes& b) { b.resize(b.size() - 1); }},
                {"not a 64-bit ELF file", [](Bytes& b) { b[EI_CLASS] = ELFCLASS32; }},
                {"not a little-endian ELF file", [](Bytes& b) { b[EI_DATA] = ELFDATA2MSB; }},
                {"ELF file of type 2", [](Bytes& b) { header(b).e_type = ET_EXEC; }},

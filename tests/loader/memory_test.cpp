@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ilaw/loader.h>
 
-#include <gtest/gtest.h>
+#include "support/program.hpp"
 
 #include <atomic>
 #include <cstdlib>
@@ -46,18 +46,12 @@ namespace {
 
 constexpr const char* file = ILAW_TEST_PLUGINS "/good.so";
 
-// With the description beside it, as `ilaw-describe` wrote it.
-std::string described_library() {
-  std::string folder = testing::TempDir() + "ilaw_memory_XXXXXX";
-  if (!mkdtemp(folder.data())) std::abort();
-  const std::string copy = folder + "/good.so";
-  std::filesystem::copy_file(file, copy);
-  if (std::system((ILAW_HOSTS "/ilaw-describe " + copy).c_str()) != 0) std::abort();
-  return copy;
-}
-
 TEST(OutOfMemory, ReadingADescriptionSaysIt) {
-  const std::string library = described_library();
+  // With the description beside it, as `ilaw-describe` wrote it.
+  const ilaw::testing::programs::TemporaryFolder folder;
+  const std::string library = (folder.path / "good.so").string();
+  std::filesystem::copy_file(file, library);
+  ASSERT_EQ(ilaw::testing::programs::run_command(ILAW_HOSTS "/ilaw-describe " + library).code, 0);
   std::int32_t code = ILAW_OK;
   char text[8192];
   std::size_t length = 0, needed = 0;
@@ -77,7 +71,6 @@ TEST(OutOfMemory, ReadingADescriptionSaysIt) {
             }),
             100);
   EXPECT_GT(needed, 100U);
-  std::filesystem::remove_all(std::filesystem::path(library).parent_path());
 }
 
 TEST(OutOfMemory, OpeningAndCreatingSayItAndLeaveNothingBehind) {

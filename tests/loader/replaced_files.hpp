@@ -10,7 +10,6 @@
 
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <stdexcept>
@@ -19,6 +18,7 @@
 namespace ilaw::testing::replaced_files {
 
 namespace fs = std::filesystem;
+using programs::TemporaryFolder;
 
 inline void must(bool well, const std::string& what) {
   if (!well) throw std::runtime_error(what);
@@ -48,20 +48,6 @@ inline void write_over(const fs::path& file, const std::string& bytes, int flags
   }
   must(close(out) == 0, "cannot close");
 }
-
-struct TemporaryFolder {
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "ilaw_replaced_XXXXXX").string();
-    must(mkdtemp(name.data()) != nullptr, "no folder");
-    path = name;
-    fs::permissions(path, fs::perms(0755));
-  }
-  ~TemporaryFolder() { fs::remove_all(path); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  fs::path path;
-};
 
 inline void install(const fs::path& file, int version) {
   const fs::path made = file.string() + ".made";

@@ -25,19 +25,12 @@ namespace fs = std::filesystem;
 class Searched : public testing::Test {
  protected:
   Searched() {
-    std::string name = (fs::temp_directory_path() / "ilaw_search_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no folder");
-    folder = name;
-    fs::permissions(folder, fs::perms(0755));
     fs::create_directory(folder / "in");
     fs::copy_file(ILAW_TEST_PLUGINS "/good.so", folder / "in" / "here.so");
     fs::copy_file(ILAW_TEST_PLUGINS "/good.so", folder / "evil.so");
     setenv("ILAW_PATH", (folder / "in").c_str(), 1);
   }
-  ~Searched() override {
-    unsetenv("ILAW_PATH");
-    fs::remove_all(folder);
-  }
+  ~Searched() override { unsetenv("ILAW_PATH"); }
 
   static std::string refusal_of(const std::string& name) {
     try {
@@ -49,7 +42,8 @@ class Searched : public testing::Test {
     }
   }
 
-  fs::path folder;
+  const TemporaryFolder made;
+  const fs::path& folder = made.path;
 };
 
 TEST_F(Searched, NameOfAnInputFileIsNeverAPath) {
@@ -142,7 +136,7 @@ TEST_F(Searched, LooksBesideAPlugin) {
   ASSERT_NE(path, nullptr);
   std::string text(path(nullptr, 0), '\0');
   path(text.data(), text.size());
-  const std::string at = fs::canonical(folder).string();
+  const std::string at = folder.string();
   EXPECT_THAT(text, HasSubstr(":" + at + "/plugins/ilaw:" + at + "/lib/ilaw:"));
   EXPECT_THAT(ilaw::search_path(), Not(HasSubstr(at + "/plugins")));
   dlclose(plugin);

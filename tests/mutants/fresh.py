@@ -60,11 +60,13 @@ def of_file(file, text):
         begin += len(line) + 1
 
 
-def draw(sources, count, seed):
-    """Mutants of an area, one in a line at most; sources: the texts by file."""
+def draw(sources, count, seed, of_lines=None):
+    """Mutants of an area, one in a line at most; sources: the texts by file; of_lines: the numbers of lines by file."""
     by_operator = {}
     for file in sorted(sources):
         for mutant in of_file(file, sources[file]):
+            if of_lines and mutant["line"] not in of_lines[file]:
+                continue
             by_operator.setdefault(mutant["name"].split(": ")[1], []).append(mutant)
     chance, drawn, lines = random.Random(seed), [], set()
     while by_operator and len(drawn) < count:

@@ -5,15 +5,20 @@
     tests/mutants/run.py --only window     those whose name holds this word
     tests/mutants/run.py --area kit        those of an area (AREAS)
     tests/mutants/run.py --last 24         the last ones of mutants.json
+    tests/mutants/run.py --numbers 68 151  these, counted from 1
     tests/mutants/run.py --near            by the nearest tests of each alone: survivors may be caught by others
     tests/mutants/run.py --fresh 7         60 new ones of each area, at places drawn by this seed (fresh.py)
+    tests/mutants/run.py --fresh 7 --changed main --count 4 --minutes 3
+                                           4 new ones in functions that differ from a commit; ends after 3 minutes
     tests/mutants/run.py --check           only whether each still fits the sources, exactly once
     tests/mutants/run.py --table           and writes the score of these areas into docs/reliability.md
 
 The copy is build/mutants; the environment variable ILAW_MUTANT is the number of the mutant that its programs have,
 0 for none. The nearest tests come first ("program", "program:filter", or "ctest NAME"), then the programs of the mutant's area,
 the quickest first, until one fails, crashes or hangs: that has caught it. A line per mutant names the tests that ran
-and their seconds. Exit codes: 0 at least 90 % are caught in every area, 1 otherwise.
+and their seconds. Exit codes: 0 at least 90 % are caught in every area, 1 otherwise. With --changed these are too few for
+a score, and a survivor may be no fault: 1 if none of at least three is caught. There, functions of headers are left
+out, because most sources include them, and only a test that failed runs without its mutant, too.
 """
 import argparse
 import collections
@@ -23,6 +28,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -80,9 +86,12 @@ def arguments():
     parser.add_argument("--only", default="", help="mutants whose name holds this word")
     parser.add_argument("--area", choices=sorted(AREAS), action="append", help="mutants of this area; to be repeated")
     parser.add_argument("--last", type=int, default=0, help="this many from the end of mutants.json")
+    parser.add_argument("--numbers", type=int, nargs="+", default=[], help="these of mutants.json, counted from 1")
     parser.add_argument("--near", action="store_true", help="the nearest tests of each alone")
     parser.add_argument("--fresh", type=int, metavar="SEED", help="mutants at places that this seed draws")
     parser.add_argument("--count", type=int, default=60, help="fresh mutants of each area")
+    parser.add_argument("--changed", metavar="COMMIT", help="fresh mutants of functions that differ from this commit")
+    parser.add_argument("--minutes", type=float, default=24 * 60, help="what has not ended by then is left out")
     parser.add_argument("--check", action="store_true", help="do not build: see whether mutants fit the sources")
     parser.add_argument("--table", action="store_true", help="write the score into docs/reliability.md")
     parser.add_argument("--jobs", default=os.cpu_count(), type=int, help="processes of the build and of the tests")
@@ -172,7 +181,19 @@ def copy_tree(by_file):
     write(TREE / "mutant_switch.hpp", SWITCH)
 
 
-def build(tests, jobs):
+def run_until(deadline, command, **options):
+    """A command, which ends with all its children at the deadline: TimeoutExpired."""
+    with subprocess.Popen(command, start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          errors="replace", **options) as process:
+        try:
+            said, _ = process.communicate(timeout=max(0.0, deadline - time.monotonic()))
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            raise
+    return process.returncode, said
+
+
+def build(tests, jobs, deadline):
     """With the options of the tests, so that ccache has what no mutant changes."""
     configure = ["cmake", "-S", TREE, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DILAW_TESTS=ON",
                  "-DILAW_WERROR=ON", "-DILAW_UNITY=ON"]
@@ -182,39 +203,39 @@ def build(tests, jobs):
     recorded = [line.split("|") for line in (BUILD / "tests" / "programs.txt").read_text().splitlines()]
     needed = {target for test in tests for target in ([test.partition(":")[0]] if not test.startswith("ctest ") else
               [one for targets, names, _ in recorded if test[6:] in names.split() for one in targets.split()])}
-    return subprocess.run(["cmake", "--build", BUILD, "-j", str(jobs), "--target", *sorted(needed), "--", "--quiet",
-                           "-k", "0"], capture_output=True, text=True)
+    return run_until(deadline, ["cmake", "--build", BUILD, "-j", str(jobs), "--target", *sorted(needed), "--", "--quiet",
+                                "-k", "0"])
 
 
-def build_fresh(mutants, tests, jobs):
+def build_fresh(mutants, tests, jobs, deadline):
     """Leaves out the mutants of lines that do not compile, such as constants and swapped arguments of two types."""
     sources = {mutant["file"] for mutant in mutants}
     while True:
         copy_tree({file: with_mutants(file, [one for one in mutants if one["file"] == file]) if
                    any(one["file"] == file for one in mutants) else (SOURCE / file).read_text() for file in sources})
-        done = build(tests, jobs)
+        code, said = build(tests, jobs, deadline)
         wrong = {(file, int(line) - 1) for file, line in
-                 re.findall(rf"{TREE}/(\S+?):(\d+):(?:\d+:)? (?:error|  required)", done.stdout + done.stderr)}
+                 re.findall(rf"{TREE}/(\S+?):(\d+):(?:\d+:)? (?:error|  required)", said)}
         left = [one for one in mutants if (one["file"], one.get("line")) not in wrong]
-        if done.returncode == 0 or len(left) == len(mutants):
-            done.returncode == 0 or sys.exit(done.stdout + done.stderr)
+        if code == 0 or len(left) == len(mutants):
+            code == 0 or sys.exit(said)
             return left
         mutants = left
 
 
 def passes(test, number, limit):
-    """Whether a program's tests pass with a mutant within a limit of seconds, and how long they took."""
+    """Whether a program's tests pass with a mutant within a limit of seconds, how long they took, and which failed."""
     program, _, chosen = test.partition(":")
     command = [BUILD / "bin" / program, "--gtest_brief=1", "--gtest_fail_fast", f"--gtest_filter={chosen or '*'}"]
     if test.startswith("ctest "):
         command = ["ctest", "--test-dir", BUILD, "-R", f"^{re.escape(test[6:])}$", "--no-tests=error"]
     begin = time.monotonic()
     try:
-        code = subprocess.run(command, capture_output=True, timeout=limit,
-                              env=os.environ | {"ILAW_MUTANT": str(number), "OMP_WAIT_POLICY": "passive"}).returncode
+        code, said = run_until(begin + limit, command,
+                               env=os.environ | {"ILAW_MUTANT": str(number), "OMP_WAIT_POLICY": "passive"})
     except subprocess.TimeoutExpired:
-        code = 1
-    return code == 0, time.monotonic() - begin
+        code, said = 1, ""
+    return code == 0, time.monotonic() - begin, re.findall(r"\[  FAILED  \] (\w[\w./]*)", said)
 
 
 def tests_of(mutant, near, usual):
@@ -227,11 +248,51 @@ def caught(mutant, near, usual):
     """Whether a test fails with it, and the tests that ran, with their seconds."""
     ran = []
     for test in tests_of(mutant, near, usual):
-        passed, seconds = passes(test, mutant["number"], 60 + 5 * usual[test])
+        passed, seconds, _ = passes(test, mutant["number"], 60 + 5 * usual[test])
         ran.append(f"{test} {seconds:.1f} s")
         if not passed:
             return True, ran
     return False, ran
+
+
+def caught_in_time(mutant, usual, deadline):
+    """The same until a deadline, None where it was too near. What failed must pass without the mutant."""
+    ran = []
+    for test in tests_of(mutant, False, usual):
+        passed, seconds, failed = passes(test, mutant["number"], max(0.0, deadline - time.monotonic()))
+        if time.monotonic() >= deadline:
+            return None, ran
+        ran.append(f"{test} {seconds:.1f} s")
+        if not passed:
+            if failed and not test.startswith("ctest "):
+                test = f"{test.partition(':')[0]}:{':'.join(failed)}"
+            if not passes(test, 0, HANGS)[0]:
+                sys.exit(f"fails without any mutant: {test}")
+            return True, ran
+    return False, ran
+
+
+def seconds_of_tests():
+    """By program, as ctest measured them where the tests ran last."""
+    usual = collections.defaultdict(float)
+    costs = SOURCE / "build" / "release" / "Testing" / "Temporary" / "CTestCostData.txt"
+    for name, _, seconds in re.findall(r"^(\S+) (\d+) ([\d.]+)$", costs.read_text() if costs.exists() else "", re.MULTILINE):
+        is_program = re.fullmatch(r"(\w+_test)(\.\d+)?", name)
+        usual[is_program[1] if is_program else f"ctest {name}"] += float(seconds)
+    return usual
+
+
+def changed_functions(commit):
+    """The sources that differ from a commit and are compiled alone: by file, the lines of their changed functions."""
+    text = subprocess.run(["git", "diff", "--function-context", commit, "--", "*.cpp", "*.py"], cwd=SOURCE, check=True,
+                          capture_output=True, text=True).stdout
+    lines, file = collections.defaultdict(set), None
+    for line in text.splitlines():
+        if line.startswith("+++ "):
+            file = line[6:] if line.startswith("+++ b/") else None
+        elif file and (found := re.match(r"@@ -\S+ \+(\d+)(?:,(\d+))? @@", line)):
+            lines[file] |= set(range(int(found[1]), int(found[1]) + int(found[2] or 1)))
+    return lines
 
 
 class Score(typing.NamedTuple):
@@ -270,8 +331,13 @@ def read_mutants(options):
         for file in files:
             if any(file.startswith(area.folder + "/") for area in AREAS.values()):
                 by_area[area_of(file)][file] = (SOURCE / file).read_text()
-        mutants = [mutant for area in sorted(options.area or AREAS)
-                   for mutant in fresh.draw(by_area[area], options.count, f"{options.fresh} {area}")]
+        if options.changed:
+            lines = changed_functions(options.changed)
+            texts = {file: text for area in options.area or AREAS for file, text in by_area[area].items() if file in lines}
+            mutants = fresh.draw(texts, options.count, options.fresh, lines)
+        else:
+            mutants = [mutant for area in sorted(options.area or AREAS)
+                       for mutant in fresh.draw(by_area[area], options.count, f"{options.fresh} {area}")]
     for number, mutant in enumerate(mutants, 1):
         mutant.update(number=number, area=area_of(mutant["file"]))
         if options.fresh is not None and mutant["area"] == "plugins":
@@ -284,6 +350,22 @@ def by_file(mutants):
     for mutant in mutants:
         found[mutant["file"]].append(mutant)
     return found
+
+
+def judge_changed(mutants, tests, jobs, deadline):
+    found = []
+    try:
+        mutants = build_fresh(mutants, tests, jobs, deadline)
+        with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+            measured = seconds_of_tests()
+            usual = {test: measured[test.partition(":")[0]] for test in tests}
+            for mutant, (end, ran) in zip(mutants, pool.map(lambda one: caught_in_time(one, usual, deadline), mutants)):
+                found.append(end)
+                word = {True: "caught", False: "SURVIVED", None: "no time"}[end]
+                print(f"{word:8}  {mutant['area']:7}  {mutant['name']}: {', '.join(ran)}", flush=True)
+    except subprocess.TimeoutExpired:
+        print("no time for the build of the mutants")
+    return 1 if found.count(False) >= 3 and not any(found) else 0
 
 
 def main():
@@ -300,17 +382,21 @@ def main():
         return 0
 
     chosen = [mutant for mutant in everything[-options.last:]
-              if options.only in mutant["name"] and mutant["area"] in (options.area or AREAS)]
+              if options.only in mutant["name"] and mutant["area"] in (options.area or AREAS)
+              and mutant["number"] in (options.numbers or [mutant["number"]])]
     commit = commit_here()
     tests = sorted({test for mutant in chosen for test in tests_of(mutant, options.near, {})})
-    chosen = build_fresh(chosen, tests, options.jobs)
+    deadline = time.monotonic() + 60 * options.minutes
+    if options.changed:
+        return 0 if not chosen else judge_changed(chosen, tests, options.jobs, deadline)
+    chosen = build_fresh(chosen, tests, options.jobs, deadline)
     score = collections.defaultdict(list)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         sound = dict(zip(tests, pool.map(lambda test: passes(test, 0, HANGS), tests)))
-        if broken := [test for test, (passed, _) in sound.items() if not passed]:
+        if broken := [test for test, (passed, *_) in sound.items() if not passed]:
             print("fail without any mutant: " + ", ".join(broken))
             return 1
-        usual = {test: seconds for test, (_, seconds) in sound.items()}
+        usual = {test: seconds for test, (_, seconds, _) in sound.items()}
         for mutant, (found, ran) in zip(chosen, pool.map(lambda one: caught(one, options.near, usual), chosen)):
             score[mutant["area"]].append(found)
             print(f"{'caught' if found else 'SURVIVED':8}  {mutant['area']:7}  {mutant['name']}: {', '.join(ran)}",

@@ -1,15 +1,18 @@
-// program.hpp - programs that tests run, and what they say.
+// program.hpp - programs that tests run, what they say, and folders to run them in.
 #pragma once
 
 #include "support/matchers.hpp"
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 
 namespace ilaw::testing::programs {
@@ -45,5 +48,19 @@ inline std::string text_of(const std::filesystem::path& file) {
   text << std::ifstream(file, std::ios::binary).rdbuf();
   return text.str();
 }
+
+struct TemporaryFolder {
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "ilaw_test_XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("no folder");
+    path = std::filesystem::canonical(name);
+    permissions(path, std::filesystem::perms(0755));
+  }
+  ~TemporaryFolder() { remove_all(path); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::filesystem::path path;
+};
 
 }  // namespace ilaw::testing::programs

@@ -65,6 +65,14 @@ def test_quantities_units_and_names_of_the_scene_are_on_the_axes(tmp_path):
     assert (results / "history.png").read_bytes()[1:4] == b"PNG"
 
 
+def test_pressure_of_a_point_without_an_area_is_no_mistake(tmp_path):
+    scene = sliding()
+    scene["model"]["points"][0]["area"], scene["output"] = 0, {"watch": [0], "contact": True}
+    results = run(scene, tmp_path)
+    assert not np.isfinite(Run(results).history(lambda name: name == "n0.pressure")[1][-1, 0])
+    assert plot(results).returncode == 0
+
+
 def test_rounding_is_left_out_and_said(tmp_path):
     results = run(sliding(), tmp_path)
     read = Run(results)
@@ -161,6 +169,7 @@ def test_several_runs_have_a_legend_of_what_differs(tmp_path):
         (tmp_path / str(friction)).mkdir()
         run(scene, tmp_path / str(friction))
     folders = sorted(tmp_path.glob("*/results"))
+    assert f"{folders[0].parent}: found folders of runs, expected one" in plot(folders[0].parent).stderr
     assert plot(*folders).returncode == 0
     text = (folders[0].parent / "comparison.svg").read_text()
     assert "friction=0.1" in text and "friction=0.4" in text
@@ -221,16 +230,23 @@ def test_measured_errors_and_times_are_drawn(tmp_path):
     ball = SOURCE / "plugins/contact/bouncing_ball.json"
     bench = ["bench", "contact", "--nodes", "20,30", "--repetitions", "1"]
     for command in (["converge", ball, "--levels", "3"], bench):
-        folder = tmp_path / command[0]
+        folder = tmp_path / "all" / command[0]
         done = subprocess.run([PROGRAM, *command, "--out", folder], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
         assert not list(folder.glob("*.png")), "measuring needs no matplotlib"
         assert plot(folder).returncode == 0
         assert (folder / f"{command[0]}.png").is_file() and (folder / f"{command[0]}.svg").is_file()
-    bars = MEASURED["bench"](tmp_path / "bench")
+    for asked in ([tmp_path / "all"], sorted((tmp_path / "all").iterdir())):
+        for picture in tmp_path.glob("all/*/*.png"):
+            picture.unlink()
+        assert plot(*asked).returncode == 0
+        assert len(list(tmp_path.glob("all/*/*.png"))) == 2
+    several = plot(tmp_path / "all", "--out", tmp_path)
+    assert several.returncode == 2 and "--out: found with 2 folders" in several.stderr
+    bars = MEASURED["bench"](tmp_path / "all/bench")
     assert [axes.get_title() for axes in bars.axes] == ["20 nodes", "30 nodes"]
     assert [len(axes.patches) for axes in bars.axes] == [1, 1]
-    errors = MEASURED["converge"](tmp_path / "converge").axes[0]
+    errors = MEASURED["converge"](tmp_path / "all/converge").axes[0]
     assert errors.get_xscale() == errors.get_yscale() == "log"
     (tmp_path / "study.csv").write_text(
         "law,dt,steps,seconds,penetration,u_L2,u_max,v_L1,instant,impulse,energy\n"

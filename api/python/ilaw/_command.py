@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import difflib
 import fcntl
 import json
 import math
@@ -16,6 +17,7 @@ from pathlib import Path
 from typing import Any, Callable, Iterator, Sequence
 
 DONE, FAILED, BAD_INPUT = 0, 1, 2
+RESULTS = ("summary.json", "sweep.csv", "converge.json", "study.json", "bench.csv")  # as in base/files.cpp
 
 
 class BadInput(Exception):
@@ -31,6 +33,11 @@ def complain(text: str, code: int) -> int:
     lines = [printable(line.strip()) for line in text.split("\n")]
     print("ilaw: " + "\n  ".join(lines), file=sys.stderr)
     return code
+
+
+def meant(word: str, known: Sequence[str]) -> str:
+    close = difflib.get_close_matches(word, known, 1)
+    return f" (did you mean '{close[0]}'?)" if close else ""
 
 
 def interrupt(number: int, frame: Any) -> None:
@@ -71,12 +78,19 @@ def run_command(work: Callable[[], int]) -> int:
 
 
 class HeldFolder:
-    """The folder of --out: made if it does not exist, and held by this process alone, as by `ilaw run`."""
+    """The folder of --out: made if it does not exist, and held by this process alone, as by `ilaw run`.
 
-    def __init__(self, folder: Path) -> None:
-        self.path, self.lock = folder, folder / "ilaw.lock"
+    own: the file of results that the command writes there; a folder with those of another command is refused.
+    """
+
+    def __init__(self, folder: Path, own: str) -> None:
+        self.path, self.lock, self.own = folder, folder / "ilaw.lock", own
 
     def __enter__(self) -> Path:
+        for other in RESULTS:
+            if other != self.own and (self.path / other).exists():
+                expected = "expected a folder of its own for each command"
+                raise BadInput(f"--out {self.path}: found {other}, a result of another command, {expected}")
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             if self.lock.is_symlink():

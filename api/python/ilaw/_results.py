@@ -7,7 +7,7 @@ import csv
 import json
 import math
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Callable, NamedTuple
 
 import numpy as np
 
@@ -110,15 +110,18 @@ class Run:
             return []
         return [(entry["time"], self.folder / entry["name"]) for entry in json.loads(series.read_text())["files"]]
 
-    def history(self) -> tuple[list[str], np.ndarray]:
-        """Names of the columns, and the rows."""
+    def history(self, is_wanted: Callable[[str], bool] = lambda name: True) -> tuple[list[str], np.ndarray]:
+        """Names of the wanted columns, and their rows."""
         file = self.folder / "history.csv"
         if not file.is_file():
             return [], np.empty((0, 0))
         with file.open(encoding="utf-8") as stream:
-            names = next(csv.reader(stream), [])
-            rows = [line for line in stream if line.strip()]
-        return names, np.loadtxt(rows, delimiter=",", ndmin=2) if rows else np.empty((0, len(names)))
+            names = next(csv.reader([stream.readline()]), [])
+            columns = [k for k, name in enumerate(names) if is_wanted(name)]
+            has_rows = bool(columns) and stream.tell() < file.stat().st_size
+            rows = (np.loadtxt(stream, delimiter=",", ndmin=2, usecols=columns, comments=None) if has_rows
+                    else np.empty((0, len(columns))))  # fmt: skip
+        return [names[k] for k in columns], rows
 
     def events(self) -> list[dict[str, Any]]:
         """Nodes that had the same event in the same step are one entry."""

@@ -15,7 +15,7 @@ from typing import Any, Iterator, NamedTuple, Optional
 
 import numpy as np
 
-from ._command import BadInput
+from ._command import DONE, BadInput, complain
 from ._errors import Trace
 from ._exact import Exact, Scene, exact_solution
 from ._results import Run
@@ -116,6 +116,8 @@ class Scenes:
 
     def __init__(self, file: Path, threads: int) -> None:
         self.file, self.threads = file, threads
+        self.said: list[str] = []  # warnings of the last run
+        self.warnings: dict[tuple[str, str], list[str]] = {}
         self.room = tempfile.TemporaryDirectory(prefix="ilaw_")
         # Small files of the many short runs need not wait for the disk.
         memory = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
@@ -129,6 +131,12 @@ class Scenes:
         self.quick_room.cleanup()
 
     def read(self) -> Scene:
+        scene = self.parse()
+        self.probe(scene, "expect")
+        return scene
+
+    def parse(self) -> Scene:
+        """Refuses what is no JSON object as `ilaw run` does."""
         def once(pairs: list[tuple[str, Any]]) -> Scene:
             if len(dict(pairs)) < len(pairs):
                 raise ValueError("a key twice")
@@ -137,11 +145,10 @@ class Scenes:
         try:
             scene = json.loads(self.file.read_text(encoding="utf-8-sig"), object_pairs_hook=once)
             if isinstance(scene, dict):
-                self.probe(scene, "expect")
                 return scene
         except (OSError, ValueError, RecursionError):
             pass
-        self._run([self.file, "--out", Path(self.quick_room.name) / "refused"], self.file)
+        self._run("--out", Path(self.quick_room.name) / "refused")
         raise BadInput("found no scene that Python reads, expected a JSON object")
 
     def probe(self, scene: Scene, *kept: str) -> Probe:
@@ -150,17 +157,27 @@ class Scenes:
         if isinstance(time, dict) and isinstance(time.get("end"), (int, float)) and time["end"] > 0:
             time = {**time, "end": 1e-300}  # one step
         run = self._run_scene({**scene, "time": time}, self.quick_room, *kept)
-        names = run.history()[0]
+        names, _ = run.history()
         dt, time = run.summary["dt"], scene["time"]
         masses = [float(interface["least_mass"]) for interface in run.summary["interfaces"]]
         return Probe(dt, steps_of(time["end"], dt), dt / time[key_of(time)], float(run.summary["critical_step"]),
                      min(masses, default=math.inf), sum(name.endswith(".u0") for name in names),
                      [interface["name"] for interface in run.summary["interfaces"]])  # fmt: skip
 
-    def trace(self, scene: Scene, names: list[str]) -> Trace:
+    def trace(self, scene: Scene, names: list[str], law: str = "") -> Trace:
         """names: of the interfaces."""
         output = {"watch": scene["output"]["watch"], "every": 1, "balance": "interface_work", "forces": names}
-        return trace_of(self._run_scene({**scene, "output": output}, self.room), names)
+        run = self._run_scene({**scene, "output": output}, self.room)
+        for text in self.said:  # alike but for their numbers
+            self.warnings.setdefault((law, re.sub(r"[\d.]+(e[+-]?\d+)?", "#", text)), []).append(text)
+        return trace_of(run, names)
+
+    def tell_warnings(self) -> None:
+        """What the runs of trace() warned of: each warning once, as its first run gave it."""
+        for (law, _), texts in self.warnings.items():
+            of_law = f" with law '{law}'" if law else ""
+            runs = "1 run" if len(texts) == 1 else f"{len(texts)} runs"
+            complain(f"{self.file}: warning of {runs}{of_law}: {texts[0]}", DONE)
 
     def seconds(self, scene: Scene, steps: int) -> float:
         """Of the processor, for the steps alone."""
@@ -181,39 +198,27 @@ class Scenes:
         """What the scene expects names columns that runs with other output lack; `kept` has "expect" if it is to be read."""
         folder, file = Path(room.name) / "out", Path(room.name) / "scene.json"
         (folder / "summary.json").unlink(missing_ok=True)
-        file.write_text(json.dumps(self._beside({key: scene[key] for key in scene if key != "expect" or key in kept})))
-        self._run([file, "--out", folder, "--threads", str(self.threads)], file)
+        file.write_text(json.dumps({key: scene[key] for key in scene if key != "expect" or key in kept}))
+        self._run("--read-from", file, "--out", folder, "--threads", str(self.threads))
         return Run(folder)
 
-    def _run(self, arguments: list[Any], file: Path) -> None:
-        done = subprocess.run([program(), "run", *arguments], capture_output=True, text=True, errors="replace")
+    def _run(self, *options: Any) -> None:
+        done = subprocess.run([program(), "run", self.file, *options], capture_output=True, text=True, errors="replace")
+        self.said = re.findall(r"^ilaw: .*?: warning: (.*(?:\n  .*)*)", done.stderr, re.MULTILINE)
         if done.returncode in (0, MISSED):
             return
-        said = ("\n" + done.stderr.strip()).rpartition("\nilaw: ")[2].removeprefix(f"{file}: ")
+        said = ("\n" + done.stderr.strip()).rpartition("\nilaw: ")[2].removeprefix(f"{self.file}: ")
         if done.returncode == 2:
             raise BadInput(said)
         if done.returncode < 0:
             raise Failed(f"its process crashed: {signal.strsignal(-done.returncode)}")
         raise Failed(re.sub(r"^failed after step \d+, time \S+: |; that state is in .*", "", said))
 
-    def _beside(self, scene: Scene) -> Scene:
-        """The scene with absolute names of the files that stand beside it."""
-        def absolute(owner: Any, key: str) -> None:
-            if isinstance(owner, dict) and isinstance(owner.get(key), str) and (key != "library" or "/" in owner[key]):
-                owner[key] = str(self.file.absolute().parent / owner[key])
-
-        scene = copy.deepcopy(scene)
-        model = scene.get("model")
-        absolute(model, "points")
-        for part, key in ((model, "meshes"), (scene, "interfaces")):
-            entries = part.get(key) if isinstance(part, dict) else None
-            for entry in entries if isinstance(entries, list) else []:
-                absolute(entry, "file" if key == "meshes" else "library")
-        return scene
-
 
 def trace_of(run: Run, interfaces: list[str]) -> Trace:
-    names, rows = run.history()
+    read = re.compile(r"time$|n\d+\.(u|v|r)\d$|n\d+\.(\S+\.)?status$|balance\.interface_work$|(%s)\.F\d$"
+                      % "|".join(map(re.escape, interfaces)))  # fmt: skip
+    names, rows = run.history(lambda name: read.match(name) is not None)
     columns = dict(zip(names, rows.T))
     summary = run.summary
     nodes = [name[:-3] for name in names if re.fullmatch(r"n\d+\.u0", name)]
@@ -229,9 +234,9 @@ def trace_of(run: Run, interfaces: list[str]) -> Trace:
         impulse += np.concatenate([summary["forces"][name]["impulse"] for name in interfaces]) - impulse[-1]
     instants = np.full((len(nodes), 3), math.nan)
     for k, node in enumerate(nodes):
-        contacts = [name.removesuffix("gap") for name in names if re.fullmatch(rf"{node}\.(\S+\.)?gap", name)]
+        contacts = [columns[name] for name in names if re.fullmatch(rf"{node}\.(\S+\.)?status", name)]
         given = np.any([columns[f"{node}.r{c}"] for c in components if contacts] or [False], axis=0)
-        broken = np.any([columns[contact + "status"] == BROKEN for contact in contacts] or [False], axis=0)
+        broken = np.any([status == BROKEN for status in contacts] or [False], axis=0)
         for place, found, which in ((0, given, 0), (1, given, -1), (2, broken, -1)):
             if found.any():
                 instants[k, place] = rows[np.flatnonzero(found)[which], 0]

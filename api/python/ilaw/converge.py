@@ -7,8 +7,10 @@ import math
 import sys
 from typing import Optional, Sequence
 
-from ._command import (DONE, FAILED, HeldFolder, Progress, complain, in_scene, remove_pictures, run_command, sweep_parser,
-                       text_of, write_csv, write_json)  # fmt: skip
+import numpy as np
+
+from ._command import (DONE, FAILED, HeldFolder, Progress, complain, in_scene, printable, remove_pictures, run_command,
+                       sweep_parser, text_of, write_csv, write_json)  # fmt: skip
 from ._errors import NORMS, Trace, errors_against_exact, errors_against_run, order_of, scale_of
 from ._variants import (Failed, Scenes, check_mesh, exact_of, expect_watched, read_sweep, refined)  # fmt: skip
 
@@ -24,10 +26,11 @@ def converge(options: argparse.Namespace) -> int:
             probe = scenes.probe(first)
             expect_watched(probe)
             exact = exact_of(first, probe)  # before anything is written
+        title, reference = source.get("title", file.stem), "exact solution" if exact else "finest run"
         traces: list[Trace] = []
         errors = []
         interrupted = False
-        with HeldFolder(options.out) as folder:
+        with HeldFolder(options.out, "converge.json") as folder:
             total = sum(probe.steps * sweep.refinement(k) / sweep.refinement(0) for k in range(sweep.levels))
             with in_scene(file), Progress("converge", "steps", options.json_lines) as progress:
                 try:
@@ -38,12 +41,15 @@ def converge(options: argparse.Namespace) -> int:
                         trace = scenes.trace(scene, own.interfaces)
                         if exact:
                             errors.append(errors_against_exact(exact_of(scene, own), trace))
+                            none = np.empty((len(trace.u), 0))  # a motion that was compared is not kept
+                            trace = trace._replace(u=none, v=none, impulse=none, work=none)
                         traces.append(trace)
                         progress.set(sum(len(trace.u) for trace in traces), total)
                 except KeyboardInterrupt:
                     interrupted = True
                 except Failed as failure:
                     raise Failed(f"run {len(traces) + 1} of {sweep.levels}: {failure}") from None
+            scenes.tell_warnings()
             if not exact:
                 errors = [errors_against_run(traces[-1], trace) for trace in traces[:-1]]
             if not errors:
@@ -53,9 +59,10 @@ def converge(options: argparse.Namespace) -> int:
             write_csv(folder / "converge.csv", 10, ("dt", "steps", "seconds", *NORMS),
                       ((t.dt, len(t.u), t.seconds, *e.values()) for t, e in zip(traces, errors)))
             write_json(folder / "converge.json", {
-                "title": source.get("title", file.stem), "reference": "exact solution" if exact else "finest run",
+                "title": title, "reference": reference,
                 "refined": "mesh and time step" if sweep.with_mesh else "time step", "levels": len(traces),
                 "orders": {norm: o if math.isfinite(o) else None for norm, o in orders.items()}})  # fmt: skip
+        print(f"{printable(title)}, against the {reference}")
         print_table(traces, errors, orders)
     return complain(f"interrupted after {len(traces)} of {sweep.levels} runs", FAILED) if interrupted else DONE
 

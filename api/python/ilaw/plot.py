@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import argparse
-import difflib
-import json
 import sys
 import warnings
 from pathlib import Path
-from typing import Any, Optional, Sequence
+from typing import Optional, Sequence
 
 import numpy as np
 
+from ._command import meant
 from ._curves import Curve, curves_of, thinned, visible
 from ._figure import COLORS, DASHES, SQUARE, STRIP, STYLE, Axes, Panel, plt, save, sheet, with_unit
 from ._measured import MEASURED
 from ._relations import relations_of
 from ._results import STATUS_NAMES, Run, UnreadableRun
+from .table import differences, flat
 
 MOST_ROWS, MOST_NODES, MOST_PANELS = 4000, 6, 12
 FIRST = ("gap", "displacement", "velocity", "impulse", "summed impulse")
@@ -69,11 +69,6 @@ class History:
             some = ", ".join(c.column for c in self.rounding[:5]) + (", ..." if len(self.rounding) > 5 else "")
             found.append(f"Not drawn, since below 1e-12 of its scale: {some}")
         return found
-
-
-def meant(word: str, known: Sequence[str]) -> str:
-    close = difflib.get_close_matches(word, known, 1)
-    return f" (did you mean '{close[0]}'?)" if close else ""
 
 
 # ---- the panels of a run over time -----------------------------------------------------------------------------------
@@ -244,21 +239,12 @@ def draw_run(folder: Path, output: Path, wanted: Sequence[str]) -> list[Path]:
 # ---- several runs, or columns over each other ------------------------------------------------------------------------
 
 
-def flat(value: Any, pointer: str = "") -> dict[str, Any]:
-    """Numbers and words by JSON pointer."""
-    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else None
-    if items is None:
-        return {pointer: value}
-    return {key: leaf for name, part in items for key, leaf in flat(part, f"{pointer}/{name}").items()}
-
-
 def legends_of(histories: list[History]) -> list[str]:
     """What differs between the scenes, if it is little; otherwise the folder."""
-    scenes = [flat({k: v for k, v in h.run.scene.items() if k not in ("title", "doc")}) for h in histories]
-    keys = list(dict.fromkeys(key for scene in scenes for key in scene))
-    differ = [key for key in keys if len({json.dumps(scene.get(key)) for scene in scenes}) > 1]
+    differ = differences([h.run.scene for h in histories])
     if not 0 < len(differ) <= 3:
         return [h.run.folder.resolve().name for h in histories]
+    scenes = [flat(h.run.scene) for h in histories]
     return [" ".join(f"{key.rpartition('/')[2]}={scene.get(key, '-')}" for key in differ) for scene in scenes]
 
 
@@ -305,6 +291,15 @@ def label_of(history: History, column: str) -> str:
     return with_unit(name, history.unit(curve))
 
 
+def measured_in(folder: Path) -> list[str]:
+    """What a folder has of converge, study or bench."""
+    return [name for name in MEASURED if (folder / f"{name}.csv").is_file()]
+
+
+def draw_measured(folder: Path, output: Path) -> list[Path]:
+    return [file for name in measured_in(folder) for file in save(MEASURED[name](folder), output / name)]
+
+
 # ---- the command -----------------------------------------------------------------------------------------------------
 
 
@@ -315,19 +310,24 @@ def draw(options: argparse.Namespace) -> list[Path]:
     folders = [f for f in options.folders if len(options.folders) == 1 or not f.is_file()]
     if not folders:
         raise BadRequest("found files alone, expected folders that `ilaw run` wrote")
-    first, columns = folders[0], options.y or options.x != "time"
+    columns = options.y or options.x != "time"
+    if not columns and not any((f / "summary.json").is_file() for f in folders):
+        inner = [f for folder in folders for f in ([folder] if measured_in(folder) else sorted(folder.glob("*/")))]
+        measured = [folder for folder in inner if measured_in(folder)]
+        if measured:  # each for itself, as a study of several scenes leaves them
+            if options.out and len(measured) > 1:
+                raise BadRequest(f"--out: found with {len(measured)} folders, expected none: each keeps its own picture")
+            return [file for folder in measured for file in draw_measured(folder, options.out or folder)]
+    first = folders[0]
+    if len(folders) == 1 and not (first / "summary.json").is_file() and any(first.glob("*/summary.json")):
+        raise BadRequest(f"{first}: found folders of runs, expected one of them, or several: {first}/*")
     if len(folders) > 1 or columns:
         if options.panels:
             expected = "expected one folder; --y chooses columns there"
             raise BadRequest(f"--panels: found with several folders or --x, {expected}")
         output = options.out or (first.resolve().parent if len(folders) > 1 else first)
         return draw_columns(folders, output, options.x, options.y)
-    output = options.out or first
-    measured = [name for name in MEASURED if (first / f"{name}.csv").is_file()]
-    written = [path for name in measured for path in save(MEASURED[name](first), output / name)]
-    if measured and not (first / "history.csv").is_file():
-        return written
-    return written + draw_run(first, output, options.panels)
+    return draw_run(first, options.out or first, options.panels)
 
 
 def main(arguments: Optional[Sequence[str]] = None) -> int:

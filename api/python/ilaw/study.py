@@ -52,6 +52,8 @@ class LawRuns:
 def read_law_option(text: str) -> Scene:
     """NAME, NAME:{parameters}, or an entry of study/laws itself."""
     name, colon, parameters = ("", ":", text) if text.startswith("{") else text.partition(":")
+    if not name and not text.startswith("{"):
+        raise BadInput(f"--law: found '{text}', expected NAME, NAME:{{parameters}}, or an entry of study/laws in JSON")
     try:
         given = json.loads(parameters) if colon else {}
     except ValueError as reason:
@@ -177,9 +179,9 @@ class Study:
     def with_entry(self, entry: Scene, refinement: float, part: float) -> tuple[Scene, float, int]:
         """The scene with a law and a part of its step, that step, and the number of steps."""
         scene, probe = self.own(refinement)
-        # The unit of time is the scene's step in a model that has no critical one.
-        is_free = math.isinf(probe.critical_step)
-        unit = self.source["time"][self.key] if is_free else probe.critical_step
+        # The unit of time is the scene's step in a model without a mesh: the critical one of springs says nothing of it.
+        has_mesh = not {"bars", "blocks", "meshes"}.isdisjoint(scene["model"])
+        unit = probe.critical_step if has_mesh else self.source["time"][self.key] * probe.unit
         # A step beyond the critical one is refused, or makes no sense.
         given = min(scene["time"][self.key] * part, 1.0 if self.key == "cfl" else probe.critical_step)
         dt = given * probe.unit
@@ -222,7 +224,7 @@ class Study:
                     break
                 measured = MeasuredRun(dt, steps)
                 try:
-                    trace = self.scenes.trace(scene, self.interfaces)
+                    trace = self.scenes.trace(scene, self.interfaces, law.name)
                     measured.penetration = trace.penetration
                     measured.errors = (errors_against_run(fine, trace) if fine else errors_against_exact(
                         exact_of(*self.own(self.sweep.refinement(level))), trace))  # fmt: skip
@@ -350,12 +352,13 @@ def study_scene(file: Path, folder: Path, options: argparse.Namespace) -> int:
             study = Study(scenes, options)
         title = study.source.get("title", file.stem)
         interrupted = False
-        with HeldFolder(folder):
+        with HeldFolder(folder, "study.json"):
             with in_scene(file), Progress("study", "runs", options.json_lines) as progress:
                 try:
                     study.run(progress)
                 except KeyboardInterrupt:
                     interrupted = True
+            scenes.tell_warnings()
             if not study.laws:
                 return complain("interrupted before any run", FAILED)
             remove_pictures(folder)
@@ -371,7 +374,7 @@ def study_all(options: argparse.Namespace) -> int:
     for stem in stems:
         if stems.count(stem) > 1:
             raise BadInput(f"found two scenes called '{stem}', expected a different name for each")
-    with HeldFolder(options.out):
+    with HeldFolder(options.out, "study.json"):
         codes = (study_scene(scene, options.out / scene.stem, options) for scene in options.scenes)
         return next((code for code in codes if code != DONE), DONE)
 

@@ -22,7 +22,6 @@ class Ilaw(CMakePackage):
         depends_on("nlohmann-json@3.11:")
         depends_on("cli11")
         depends_on("tinyxml2")
-        depends_on("valijson")
         depends_on("vtk@9:~mpi")
         depends_on("zlib-api")
 

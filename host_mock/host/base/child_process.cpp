@@ -2,7 +2,6 @@
 #include "base/child_process.hpp"
 
 #include "base/scene_error.hpp"
-#include "base/stop_request.hpp"
 
 #include <string.h>
 #include <sys/prctl.h>
@@ -80,24 +79,16 @@ std::string reason_of(int status, unsigned max_seconds) {
   return "ended the program with code " + std::to_string(WEXITSTATUS(status));
 }
 
-// signal: what the child gets where this process ends before it.
-pid_t start_child(int signal) {
-  std::fflush(nullptr);  // or the child would print what is still to be printed
-  const pid_t child = fork();
-  if (child < 0) throw std::runtime_error(std::string("no process can be started: ") + strerror(errno));
-  if (child == 0) prctl(PR_SET_PDEATHSIG, signal);
-  return child;
-}
-
 }  // namespace
 
 std::string result_in_process(const std::function<std::string()>& work, unsigned max_seconds,
                               unsigned long long max_bytes) {
   std::array<int, 2> ends{};
-  if (pipe(ends.data()) != 0)
-    throw std::runtime_error(std::string("no process can be started: ") + strerror(errno));
-  const pid_t child = start_child(SIGKILL);
+  std::fflush(nullptr);  // or the child would print what is still to be printed
+  const pid_t child = pipe(ends.data()) == 0 ? fork() : -1;
+  if (child < 0) throw std::runtime_error(std::string("no process can be started: ") + strerror(errno));
   if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // where this process ends before it
     close(ends[0]);
     std::signal(SIGALRM, SIG_DFL);
     alarm(max_seconds);  // code that never ends
@@ -116,34 +107,6 @@ std::string result_in_process(const std::function<std::string()>& work, unsigned
   if (text[0] == scene_error) throw SceneError(text.substr(1));
   if (text[0] == other_error) throw std::runtime_error(text.substr(1));
   return text.substr(1);
-}
-
-// In a process group of its own: Ctrl-C reaches this process alone, which passes it on once.
-void Processes::start(std::size_t number, const std::function<int()>& work) {
-  const pid_t child = start_child(SIGTERM);
-  if (child == 0) {
-    setpgid(0, 0);
-    const int code = work();
-    _exit(std::fflush(nullptr) == 0 ? code : 1);
-  }
-  running_.emplace(child, number);
-}
-
-// A signal may come just before a call of waitpid that blocks: it is asked again and again.
-Processes::Ended Processes::wait() {
-  constexpr useconds_t microseconds = 1000;
-  for (;; usleep(microseconds)) {
-    if (stop_requested() && !has_passed_on_)
-      for (const auto& [child, number] : running_) kill(child, SIGTERM);
-    has_passed_on_ = stop_requested();
-    int status = 0;
-    const auto found = running_.find(waitpid(-1, &status, WNOHANG));
-    if (found == running_.end()) continue;
-    const std::size_t number = found->second;
-    running_.erase(found);
-    if (WIFEXITED(status)) return {number, WEXITSTATUS(status), ""};
-    return {number, 1, reason_of(status, 0)};
-  }
 }
 
 }  // namespace ilaw::host

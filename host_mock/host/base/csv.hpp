@@ -3,7 +3,6 @@
 #pragma once
 
 #include <charconv>
-#include <cmath>
 #include <concepts>
 #include <ostream>
 #include <sstream>
@@ -34,8 +33,6 @@ class CsvWriter {
   }
   CsvWriter& operator<<(const char* text) { return *this << std::string_view(text); }
   CsvWriter& operator<<(std::integral auto value) { return *this << std::to_string(value); }
-  // Empty where there is no number.
-  void add_if_finite(double value) { std::isfinite(value) ? *this << value : *this << ""; }
 
   void end_row() {
     out_ << '\n';

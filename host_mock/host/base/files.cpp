@@ -121,8 +121,14 @@ bool is_still(int descriptor, const std::filesystem::path& file) {
 
 // ---- the folder -----------------------------------------------------------------------------------------
 
-HeldFolder::HeldFolder(const std::filesystem::path& folder) : lock_(folder / "ilaw.lock") {
+HeldFolder::HeldFolder(const std::filesystem::path& folder, std::string_view own)
+    : lock_(folder / "ilaw.lock") {
   if (folder.empty()) throw InputError("--out: found an empty name, expected that of a folder");
+  for (const char* other : {"summary.json", "sweep.csv", "converge.json", "study.json", "bench.csv"})
+    if (std::error_code unknown;
+        !own.empty() && own != other && std::filesystem::exists(folder / other, unknown))
+      throw InputError("--out " + folder.string() + ": found " + other +
+                       ", a result of another command, expected a folder of its own for each command");
   std::error_code unmade;
   std::filesystem::create_directories(folder, unmade);
   for (;;) {

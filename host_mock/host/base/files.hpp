@@ -25,7 +25,8 @@ class WriteError : public std::runtime_error {
 // InputError where that cannot be, and names the process that holds it.
 class HeldFolder {
  public:
-  explicit HeldFolder(const std::filesystem::path& folder);
+  // own: the file of results that the command writes there, if results of other commands are refused.
+  explicit HeldFolder(const std::filesystem::path& folder, std::string_view own = {});
   ~HeldFolder();
   HeldFolder(const HeldFolder&) = delete;
   HeldFolder& operator=(const HeldFolder&) = delete;

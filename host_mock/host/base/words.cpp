@@ -54,13 +54,6 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-std::string last_of(const std::vector<std::string>& words) {
-  constexpr std::size_t max_words = 20;
-  if (words.size() <= max_words) return joined(words);
-  return joined(std::vector<std::string>(words.end() - max_words, words.end())) + " and " +
-         std::to_string(words.size() - max_words) + " more";
-}
-
 std::string suggestion(const std::string& found, const std::vector<std::string>& words) {
   std::size_t fewest = 3;
   std::string nearest;

@@ -20,9 +20,6 @@ std::string in_digits(double value, int digits);
 // "one, two, three".
 std::string joined(const std::vector<std::string>& words);
 
-// The last names of a long list, and how many more there are.
-std::string last_of(const std::vector<std::string>& words);
-
 // " (did you mean 'one'?)" with the nearest of the words, or nothing where none is near.
 std::string suggestion(const std::string& found, const std::vector<std::string>& words);
 

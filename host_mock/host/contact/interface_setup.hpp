@@ -25,6 +25,7 @@ inline constexpr double driven_delassus = 0x1p-40;
 
 struct InterfaceSetup {
   std::string name, law, library;  // library: name or path
+  std::string edges_of;            // the interface that these edge rows belong to; empty: no edge rows
   Arguments arguments;
   std::vector<int> nodes;
   std::vector<double> areas;  // tributary, per node

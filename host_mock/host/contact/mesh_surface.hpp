@@ -45,6 +45,9 @@ class MeshSurface : public Counterpart {
   double shortest_edge() const { return shortest_edge_; }
 
  private:
+  // Whether no node can be in reach in this step, as others know.
+  virtual bool is_apart() const { return false; }
+
   struct Destroy {
     void operator()(ilaw_facets* search) const { ilaw_facets_destroy(search); }
   };

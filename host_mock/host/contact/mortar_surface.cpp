@@ -298,6 +298,13 @@ bool MortarSurface::is_held(int node_index) const {
   return rows_[static_cast<std::size_t>(node_index)].area == 0.0 && MeshSurface::is_held(node_index);
 }
 
+void EdgeRows::find_contact(int node_index, const Dofs& u, double time, ContactPoint& found) const {
+  MeshSurface::find_contact(node_index, u, time, found);
+  if (!(found.gap < -deepest_)) return;
+  found.gap = deepest_;
+  found.is_beyond_border = true;
+}
+
 // ---- checkpoints ----------------------------------------------------------------------------------------
 
 // Weights were integrated in earlier steps. A row follows from its patches, but for its start.

@@ -29,6 +29,8 @@ class MortarSurface : public MeshSurface {
   bool find_near(const Dofs& u, const Approach& approach) override;
   double horizon() const override { return horizon_; }
   bool is_held(int node_index) const override;
+  // After find_near: no facet is in reach of another in this step.
+  bool is_apart() const override { return is_list_made_ && listed_.empty(); }
   void save(std::ostream& out) const override;
   void load(std::istream& in) override;
 
@@ -87,6 +89,24 @@ class MortarSurface : public MeshSurface {
   Dofs at_, at_list_;                       // positions, now and when the list was made
   double horizon_ = 0.0, travelled_ = 0.0;  // of the list; since the surfaces were last compared with it
   double past_motion_ = 0.0;                // before the list
+};
+
+// Nodes of the main surface, at its border and its sharp edges, against facets of the secondary one. Nodes
+// deeper behind it than deepest are not in contact: they are on another side of their body.
+class EdgeRows : public MeshSurface {
+ public:
+  EdgeRows(const Model& model, std::vector<int> nodes, const NodeSet& secondary, double deepest,
+           const MortarSurface& faces)
+      : MeshSurface(model, std::move(nodes), secondary), deepest_(deepest), faces_(faces) {}
+
+  void find_contact(int node_index, const Dofs& u, double time, ContactPoint& found) const override;
+
+ private:
+  // Both surfaces were compared in this step, since edge rows come behind their interface.
+  bool is_apart() const override { return faces_.is_apart(); }
+
+  double deepest_;
+  const MortarSurface& faces_;
 };
 
 }  // namespace ilaw::host

@@ -5,6 +5,7 @@
 #include "base/words.hpp"
 #include "model/elements.hpp"
 #include "results/obstacle_shapes.hpp"
+#include "results/quantities.hpp"
 
 #include <vtkCellData.h>
 #include <vtkCellType.h>
@@ -18,6 +19,7 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -29,8 +31,10 @@ namespace {
 
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
+// Edge rows write into the arrays of their interface, at other nodes.
 vtkDoubleArray* add_to(vtkDataSetAttributes& arrays, const std::string& name, int components, vtkIdType count,
                        double value) {
+  if (auto* known = vtkDoubleArray::SafeDownCast(arrays.GetArray(name.c_str()))) return known;
   vtkNew<vtkDoubleArray> array;
   array->SetName(name.c_str());
   array->SetNumberOfComponents(components);
@@ -97,30 +101,6 @@ void add_stresses(vtkUnstructuredGrid& grid, const Model& model, const Dofs& u) 
   }
 }
 
-// Where a state variable stands in the state of a node. Histories and what is internal mean nothing
-// outside their law.
-struct StateArray {
-  vtkDoubleArray* array;
-  int entry, count;
-};
-
-std::vector<StateArray> add_states(vtkUnstructuredGrid& grid, const ilaw_instance_info& info,
-                                   const std::string& prefix, int node_count) {
-  std::vector<StateArray> states;
-  int entry = 0;
-  for (std::uint32_t i = 0; i < info.state_variable_count; ++i) {
-    const ilaw_state_variable& variable = *info.state_variables[i];
-    const bool vector = variable.kind == ILAW_KIND_VECTOR || variable.kind == ILAW_KIND_TANGENTIAL;
-    const auto count = static_cast<int>(variable.count);
-    const bool is_shown = (variable.flags & ILAW_FLAG_INTERNAL) == 0;
-    if (is_shown && count > 0 && (vector || variable.kind == ILAW_KIND_SCALAR))
-      states.push_back(
-          {add_array(grid, prefix + variable.name, node_count, vector ? 3 : 1, no_value), entry, count});
-    entry += count;
-  }
-  return states;
-}
-
 // Force per area on the interface's own nodes in the last step, in the scene's axes.
 void add_traction(vtkUnstructuredGrid& grid, const Interface& interface, const std::string& prefix,
                   int node_count, double dt) {
@@ -137,15 +117,25 @@ void add_traction(vtkUnstructuredGrid& grid, const Interface& interface, const s
   }
 }
 
+vtkIntArray* add_status(vtkUnstructuredGrid& grid, const std::string& name, int node_count) {
+  vtkPointData& arrays = *grid.GetPointData();
+  if (auto* known = vtkIntArray::SafeDownCast(arrays.GetArray(name.c_str()))) return known;
+  vtkNew<vtkIntArray> status;
+  status->SetName(name.c_str());
+  status->SetNumberOfTuples(node_count);
+  status->FillValue(-1);
+  arrays.AddArray(status);
+  return status;
+}
+
 void add_interface(vtkUnstructuredGrid& grid, const Interface& interface, const std::string& prefix,
                    int node_count, const Integrator& integrator) {
   vtkDoubleArray* gap = add_array(grid, prefix + "gap", node_count, 1, no_value);
-  vtkNew<vtkIntArray> status;
-  status->SetName((prefix + "status").c_str());
-  status->SetNumberOfTuples(node_count);
-  status->FillValue(-1);
-  grid.GetPointData()->AddArray(status);
-  const std::vector<StateArray> states = add_states(grid, interface.info(), prefix, node_count);
+  vtkIntArray* status = add_status(grid, prefix + "status", node_count);
+  const std::vector<ShownState> states = shown_states(interface.info());
+  std::vector<vtkDoubleArray*> arrays;
+  for (const ShownState& state : states)
+    arrays.push_back(add_array(grid, prefix + state.name, node_count, state.is_vector ? 3 : 1, no_value));
   interface.setup().counterpart->follow(integrator.displacement());
   for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
     const int node = interface.nodes()[k], node_index = static_cast<int>(k);
@@ -153,13 +143,11 @@ void add_interface(vtkUnstructuredGrid& grid, const Interface& interface, const 
     status->SetValue(node, ILAW_FREE);
     if (states.empty()) continue;
     const std::vector<double> values = interface.state_at(node_index, integrator.displacement());
-    for (const StateArray& state : states) {
-      for (int c = state.count; c < state.array->GetNumberOfComponents(); ++c)
-        state.array->SetComponent(node, c, 0.0);
-      for (int c = 0; c < state.count; ++c)
-        state.array->SetComponent(
-            node, c, values[static_cast<std::size_t>(state.entry) + static_cast<std::size_t>(c)]);
-    }
+    for (std::size_t s = 0; s < states.size(); ++s)
+      for (int c = 0; c < arrays[s]->GetNumberOfComponents(); ++c) {
+        const auto place = static_cast<std::size_t>(c);
+        arrays[s]->SetComponent(node, c, place < states[s].count ? values[states[s].entry + place] : 0.0);
+      }
   }
   for (const std::int32_t contact_index : interface.active())
     status->SetValue(interface.node_of(contact_index), interface.status(contact_index));
@@ -182,8 +170,11 @@ void Fields::write(const Integrator& integrator) {
   vtkNew<vtkUnstructuredGrid> grid;
   add_body(*grid, integrator);
   add_vectors(*grid, "r", integrator.interface_impulse(), model.dimension());
+  const auto is_own = [](const auto& interface) { return interface->setup().edges_of.empty(); };
+  const bool is_alone = std::count_if(scene_.interfaces.begin(), scene_.interfaces.end(), is_own) == 1;
   for (const auto& interface : scene_.interfaces) {
-    const std::string prefix = scene_.interfaces.size() == 1 ? "" : interface->name() + ".";
+    const std::string& name = is_own(interface) ? interface->name() : interface->setup().edges_of;
+    const std::string prefix = is_alone ? "" : name + ".";
     add_interface(*grid, *interface, prefix, model.node_count(), integrator);
     add_traction(*grid, *interface, prefix, model.node_count(), scene_.dt);
   }

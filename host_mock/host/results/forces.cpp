@@ -95,7 +95,8 @@ void Forces::add_at(int node, const double* impulse, const ForceSetup& force, Re
     sum.moment[c] += about(d == 2 ? 2 : static_cast<std::size_t>(c));
 }
 
-void Forces::add_names(std::vector<std::string>& names) const {
+std::vector<std::string> Forces::names() const {
+  std::vector<std::string> names;
   for (std::size_t k = 0; k < sums_.size(); ++k) {
     const std::string& name = scene_.output.forces[k].name;
     for (Eigen::Index c = 0; c < sums_[k].impulse.size(); ++c)
@@ -103,13 +104,15 @@ void Forces::add_names(std::vector<std::string>& names) const {
     for (Eigen::Index c = 0; c < sums_[k].moment.size(); ++c)
       names.push_back(name + ".M" + std::to_string(c));
   }
+  return names;
 }
 
-void Forces::write_row(CsvWriter& table, double time) {
+void Forces::close_row(double time) {
+  means_.clear();
   for (Resultant& sum : sums_) {
     const double duration = static_cast<double>(sum.steps) * scene_.dt;
-    for (const double impulse : sum.impulse) table << impulse / duration;
-    for (const double moment : sum.moment) table << moment / duration;
+    for (const Dofs* whole : {&sum.impulse, &sum.moment})
+      for (const double part : *whole) means_.push_back(part / duration);
     if (const double force = sum.impulse.norm() / duration; force > sum.largest) {
       sum.largest = force;
       sum.largest_at = time;

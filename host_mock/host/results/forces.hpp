@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "base/csv.hpp"
 #include "scene/scene.hpp"
 #include "step/integrator.hpp"
 
@@ -25,9 +24,11 @@ class Forces {
   void add_step(const Integrator& integrator);
 
   // <name>.F0 ..., and <name>.M0 ... where a moment is asked for.
-  void add_names(std::vector<std::string>& names) const;
-  // Means over the steps since the last row, which ends at the time.
-  void write_row(CsvWriter& table, double time);
+  std::vector<std::string> names() const;
+  // In their order, means over the steps of the last row.
+  const std::vector<double>& means() const { return means_; }
+  // Begins a row after the one that ends at the time.
+  void close_row(double time);
 
   // Per name the impulse of the whole run, and the largest size of the force at the start or in a row.
   nlohmann::json summary() const;
@@ -54,7 +55,8 @@ class Forces {
 
   const Scene& scene_;
   std::vector<Resultant> sums_;  // by scene.output.forces
-  Dofs of_load_;                 // per degree of freedom
+  std::vector<double> means_;
+  Dofs of_load_;  // per degree of freedom
 };
 
 }  // namespace ilaw::host

@@ -2,40 +2,24 @@
 #include "results/history.hpp"
 
 #include "base/words.hpp"
+#include "results/quantities.hpp"
 
 #include <algorithm>
 #include <string>
 
 namespace ilaw::host {
-namespace {
-
-// Named state variables. Histories and what is internal mean nothing outside their law.
-template <class Visit>
-void for_each_state(const ilaw_instance_info& info, Visit visit) {
-  int entry = 0;
-  for (std::uint32_t i = 0; i < info.state_variable_count; ++i) {
-    const ilaw_state_variable& variable = *info.state_variables[i];
-    const auto count = static_cast<int>(variable.count);
-    const bool is_shown = (variable.flags & ILAW_FLAG_INTERNAL) == 0;
-    if (is_shown && variable.kind == ILAW_KIND_SCALAR) visit(std::string(variable.name), entry);
-    if (is_shown && (variable.kind == ILAW_KIND_VECTOR || variable.kind == ILAW_KIND_TANGENTIAL))
-      for (int k = 0; k < count; ++k) visit(variable.name + std::to_string(k), entry + k);
-    entry += count;
-  }
-}
-
-}  // namespace
-
-History::History(const Scene& scene, Integrator& integrator) : scene_(scene), forces_(scene, integrator) {
+History::History(const Scene& scene, Integrator& integrator)
+    : scene_(scene), integrator_(integrator), forces_(scene, integrator) {
   find_contacts();
   find_motions(integrator);
+  describe_columns();
 }
 
 void History::open(const std::filesystem::path& folder, const std::optional<FileMark>& written) {
   file_.emplace(folder / "history.csv", written);
   table_.emplace(file_->stream());
   if (written) return;
-  for (const std::string& name : columns()) *table_ << name;
+  for (const Column& column : columns_) *table_ << column.name;
   table_->end_row();
 }
 
@@ -70,70 +54,91 @@ void History::find_contacts() {
   }
 }
 
-std::vector<std::string> History::columns() const {
+// Names, and what stands below them once refresh() was called.
+void History::describe_columns() {
+  const Integrator& at = integrator_;
   const int d = scene_.model->dimension();
-  std::vector<std::string> names = {"time"};
+  const auto add = [this](const std::string& name, auto value) { columns_.push_back({name, value}); };
+  add("time", [&at] { return at.time(); });
   for (std::size_t w = 0; w < contacts_.size(); ++w) {
-    const std::string node = "n" + std::to_string(scene_.output.watch[w]) + ".";
-    for (const char* quantity : {"u", "v", "r"})
-      for (int c = 0; c < d; ++c) names.push_back(node + quantity + std::to_string(c));
-    if (has_temperature(scene_.output.watch[w])) names.push_back(node + "T");
+    const int node = scene_.output.watch[w];
+    const std::string name = "n" + std::to_string(node) + ".";
+    const auto add_vector = [&](const char* quantity, auto dofs) {
+      for (int c = 0; c < d; ++c)
+        add(name + quantity + std::to_string(c), [=] { return dofs()[Eigen::Index{node} * d + c]; });
+    };
+    const Dofs& impulse = is_alone_[w] && !motions_.empty() ? held_ : impulse_;
+    add_vector("u", [&at]() -> const Dofs& { return at.displacement(); });
+    add_vector("v", [&at]() -> const Dofs& { return at.velocity(); });
+    add_vector("r", [&impulse]() -> const Dofs& { return impulse; });
+    if (scene_.model->thermal() && scene_.model->thermal()->has_temperature(node))
+      add(name + "T", [&at, node] { return at.temperatures()->at(node); });
     for (const Contact& contact : contacts_[w]) {
-      names.push_back(contact.prefix + "gap");
-      names.push_back(contact.prefix + "status");
-      for_each_state(contact.interface->info(),
-                     [&](const std::string& name, int) { names.push_back(contact.prefix + name); });
+      add(contact.prefix + "gap", [&at, &contact] {
+        return contact.interface->gap_at(contact.node_index, at.displacement(), at.time());
+      });
+      add(contact.prefix + "status", [&contact] {
+        const int index = contact.interface->contact_at(contact.node_index);
+        return contact.interface->is_active(index) ? contact.interface->status(index) : int{ILAW_FREE};
+      });
+      for (const ShownState& state : shown_states(contact.interface->info()))
+        for (std::size_t k = 0; k < state.count; ++k)
+          add(contact.prefix + state.name + (state.is_vector ? std::to_string(k) : ""),
+              [&contact, entry = state.entry + k] { return contact.state[entry]; });
       if (!scene_.output.contact) continue;
-      for (const char* quantity : {"pressure", "shear", "slip_length", "wear_depth"})
-        names.push_back(contact.prefix + quantity);
+      add(contact.prefix + "pressure", [&contact] { return contact.last.pressure; });
+      add(contact.prefix + "shear", [&contact] { return contact.last.shear; });
+      add(contact.prefix + "slip_length", [&contact] { return contact.slip; });
+      add(contact.prefix + "wear_depth", [&contact] { return contact.wear; });
     }
   }
-  forces_.add_names(names);
-  if (!scene_.output.energy.empty()) names.push_back("balance." + scene_.output.energy);
-  if (scene_.output.energy == "reaction_work") names.emplace_back("balance.largest");
-  if (scene_.output.balance) {
-    for (const char* quantity :
-         {"kinetic", "internal", "potential", "external_work", "damping_work", "interface_work",
-          "dissipated_friction", "dissipated_impact", "dissipated_rupture", "stored", "error"})
-      names.push_back(std::string("balance.") + quantity);
-    for (int c = 0; c < (d == 1 ? 0 : d == 2 ? 1 : 3); ++c)
-      names.push_back("balance.angular_momentum" + std::to_string(c));
-    if (scene_.model->thermal())
-      for (const char* quantity : {"stored", "obstacles", "friction", "supplied", "error"})
-        names.push_back(std::string("heat.") + quantity);
+  const std::vector<std::string> forces = forces_.names();
+  for (std::size_t k = 0; k < forces.size(); ++k) add(forces[k], [this, k] { return forces_.means()[k]; });
+  if (scene_.output.energy == "interface_work")
+    add("balance.interface_work", [&at] { return at.interface_work(); });
+  if (scene_.output.energy == "reaction_work") {
+    add("balance.reaction_work", [this] { return energy_.reaction_work; });
+    add("balance.largest", [this] { return energy_.scale; });
   }
+  if (!scene_.output.balance) return;
+  for (std::size_t k = 0; k < named(energy_).size(); ++k)
+    add("balance." + std::string(named(energy_)[k].first), [this, k] { return named(energy_)[k].second; });
+  add("balance.error", [this] { return energy_.balance_error; });
+  for (Eigen::Index c = 0; c < (d == 1 ? 0 : d == 2 ? 1 : 3); ++c)
+    add("balance.angular_momentum" + std::to_string(c), [this, c] { return angular_momentum_[c]; });
+  if (!scene_.model->thermal()) return;
+  for (std::size_t k = 0; k < named(heat_).size(); ++k)
+    add("heat." + std::string(named(heat_)[k].first), [this, k] { return named(heat_)[k].second; });
+  add("heat.error", [this] { return heat_.balance_error; });
+}
+
+// What several columns of a row are part of.
+void History::refresh() {
+  if (!contacts_.empty()) impulse_ = integrator_.interface_impulse();
+  if (!motions_.empty()) held_.setZero(impulse_.size());
+  for (const std::size_t load : motions_) integrator_.add_load_impulse(load, held_);
+  for (std::vector<Contact>& contacts : contacts_)
+    for (Contact& contact : contacts) {
+      contact.interface->setup().counterpart->follow(integrator_.displacement());
+      contact.state = contact.interface->state_at(contact.node_index, integrator_.displacement());
+    }
+  forces_.close_row(integrator_.time());
+  if (scene_.output.balance || scene_.output.energy == "reaction_work") energy_ = integrator_.energy();
+  if (scene_.output.balance) angular_momentum_ = integrator_.angular_momentum();
+  if (scene_.output.balance && integrator_.temperatures()) heat_ = integrator_.temperatures()->report();
+}
+
+void History::add_row() {
+  refresh();
+  for (const Column& column : columns_) *table_ << column.value();
+  table_->end_row();
+  file_->check();
+}
+
+std::vector<std::string> History::names() const {
+  std::vector<std::string> names;
+  for (const Column& column : columns_) names.push_back(column.name);
   return names;
-}
-
-bool History::has_temperature(int node) const {
-  return scene_.model->thermal() && scene_.model->thermal()->has_temperature(node);
-}
-
-void History::add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse) {
-  const int d = scene_.model->dimension();
-  const Eigen::Index node = static_cast<Eigen::Index>(scene_.output.watch[watched]) * d;
-  const auto add = [&](const Dofs& quantity) {
-    for (int c = 0; c < d; ++c) *table_ << quantity[node + c];
-  };
-  add(integrator.displacement());
-  add(integrator.velocity());
-  add(impulse);
-  if (has_temperature(scene_.output.watch[watched]))
-    *table_ << integrator.temperatures()->at(scene_.output.watch[watched]);
-  for (const Contact& contact : contacts_[watched]) {
-    const Interface& interface = *contact.interface;
-    interface.setup().counterpart->follow(integrator.displacement());
-    const int contact_index = interface.contact_at(contact.node_index);
-    const int status = interface.is_active(contact_index) ? interface.status(contact_index) : int{ILAW_FREE};
-    *table_ << interface.gap_at(contact.node_index, integrator.displacement(), integrator.time()) << status;
-    const std::vector<double> state = interface.state_at(contact.node_index, integrator.displacement());
-    for_each_state(interface.info(),
-                   [&](const std::string&, int entry) { *table_ << state[static_cast<std::size_t>(entry)]; });
-    if (!scene_.output.contact) continue;
-    table_->add_if_finite(contact.last.pressure);  // a point may have no area
-    table_->add_if_finite(contact.last.shear);
-    *table_ << contact.slip << contact.wear;
-  }
 }
 
 template <class Visit>
@@ -147,18 +152,18 @@ void History::for_each_acting(Visit visit) {
     }
 }
 
-void History::add_start(const Integrator& integrator) {
-  forces_.add_start(integrator);
+void History::add_start() {
+  forces_.add_start(integrator_);
   for_each_acting([](Contact& contact, int index) { contact.wear += contact.interface->wear(index); });
 }
 
-void History::add_step(const Integrator& integrator) {
-  forces_.add_step(integrator);
+void History::add_step() {
+  forces_.add_step(integrator_);
   for (std::vector<Contact>& contacts : contacts_)
     for (Contact& contact : contacts) contact.last = {};
   const StepView step{
-      integrator.displacement(), integrator.velocity_before(), integrator.time(), scene_.dt, 0.0, 0.0,
-      integrator.steps()};
+      integrator_.displacement(), integrator_.velocity_before(), integrator_.time(), scene_.dt, 0.0, 0.0,
+      integrator_.steps()};
   for_each_acting([&](Contact& contact, int index) {
     contact.last = contact.interface->rubbing(index, step);
     contact.slip += contact.last.slip;
@@ -190,40 +195,6 @@ void History::load(const nlohmann::json& state, std::int64_t step) {
   if (!unknown.empty())
     late_sums_.push_back(joined(unknown) + ": summed from step " + std::to_string(step) +
                          " only, because the run before it did not ask for them");
-}
-
-void History::add_row(const Integrator& integrator) {
-  *table_ << integrator.time();
-  if (!contacts_.empty()) {
-    const Dofs impulse = integrator.interface_impulse();
-    Dofs held = Dofs::Zero(motions_.empty() ? 0 : impulse.size());
-    for (const std::size_t load : motions_) integrator.add_load_impulse(load, held);
-    for (std::size_t w = 0; w < contacts_.size(); ++w)
-      add_node(w, integrator, is_alone_[w] && !motions_.empty() ? held : impulse);
-  }
-  forces_.write_row(*table_, integrator.time());
-  if (scene_.output.energy == "interface_work") *table_ << integrator.interface_work();
-  if (scene_.output.energy == "reaction_work") {
-    const EnergyReport energy = integrator.energy();
-    *table_ << energy.reaction_work << energy.scale;
-  }
-  if (scene_.output.balance) {
-    const EnergyReport energy = integrator.energy();
-    for (const double value :
-         {energy.kinetic, energy.internal, energy.potential, energy.external_work, energy.damping_work,
-          energy.interface_work, energy.by_law[ILAW_ENERGY_FRICTION], energy.by_law[ILAW_ENERGY_IMPACT],
-          energy.by_law[ILAW_ENERGY_RUPTURE], energy.by_law[ILAW_ENERGY_STORED], energy.balance_error})
-      *table_ << value;
-    for (const double component : integrator.angular_momentum()) *table_ << component;
-    if (integrator.temperatures()) {
-      const HeatReport heat = integrator.temperatures()->report();
-      for (const double value :
-           {heat.stored, heat.obstacles, heat.friction, heat.supplied, heat.balance_error})
-        *table_ << value;
-    }
-  }
-  table_->end_row();
-  file_->check();
 }
 
 }  // namespace ilaw::host

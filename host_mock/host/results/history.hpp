@@ -9,6 +9,7 @@
 #include "step/integrator.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,15 +24,15 @@ class History {
   // Before the first row. written: by an earlier run, which this one continues.
   void open(const std::filesystem::path& folder, const std::optional<FileMark>& written = {});
   // After the start, before any step.
-  void add_start(const Integrator& integrator);
+  void add_start();
   // After every step, before its row.
-  void add_step(const Integrator& integrator);
-  void add_row(const Integrator& integrator);
+  void add_step();
+  void add_row();
   FileMark flush() { return file_->flush(); }
   void commit() { file_->commit(); }
   void keep_rows() { file_->keep_lines(); }
 
-  std::vector<std::string> columns() const;
+  std::vector<std::string> names() const;  // of the columns
   const Forces& forces() const { return forces_; }
   // The state beside the integrator on which the next row depends, by name: a resumed run may have other
   // columns.
@@ -47,20 +48,26 @@ class History {
   struct Contact {
     const Interface* interface;
     int node_index;
-    std::string prefix;  // "n0." or, where the node has several, "n0.<interface>."
+    std::string prefix;           // "n0." or, where the node has several, "n0.<interface>."
+    std::vector<double> state{};  // in the last row
     Interface::Rubbing last{};
     double slip = 0.0, wear = 0.0;  // since the start
+  };
+  struct Column {
+    std::string name;
+    std::function<double()> value;
   };
   // visit(contact, contact_index), of those whose status is not free, where they are to be told.
   template <class Visit>
   void for_each_acting(Visit visit);
   void find_contacts();
   void find_motions(Integrator& integrator);
-  bool has_temperature(int node) const;
-  nlohmann::json layout() const { return {{"names", columns()}, {"points", forces_.points()}}; }
-  void add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse);
+  void describe_columns();
+  void refresh();
+  nlohmann::json layout() const { return {{"names", names()}, {"points", forces_.points()}}; }
 
   const Scene& scene_;
+  const Integrator& integrator_;
   std::optional<AtomicFile> file_;
   std::optional<CsvWriter> table_;
   std::vector<std::vector<Contact>> contacts_;  // per watched node
@@ -68,6 +75,12 @@ class History {
   std::vector<std::size_t> motions_;            // loads that drive a watched node
   std::vector<std::string> late_sums_;
   Forces forces_;
+  std::vector<Column> columns_;
+  // Of the last row.
+  Dofs impulse_, held_;  // of interfaces, and of what drives nodes
+  EnergyReport energy_{};
+  Vector angular_momentum_;
+  HeatReport heat_{};
 };
 
 }  // namespace ilaw::host

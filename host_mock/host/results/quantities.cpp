@@ -6,11 +6,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace ilaw::host {
 
 using nlohmann::json;
+
+std::vector<ShownState> shown_states(const ilaw_instance_info& info) {
+  std::vector<ShownState> states;
+  std::size_t entry = 0;
+  for (std::uint32_t i = 0; i < info.state_variable_count; ++i) {
+    const ilaw_state_variable& variable = *info.state_variables[i];
+    const bool is_vector = variable.kind == ILAW_KIND_VECTOR || variable.kind == ILAW_KIND_TANGENTIAL;
+    if (!(variable.flags & ILAW_FLAG_INTERNAL) && (is_vector || variable.kind == ILAW_KIND_SCALAR))
+      states.push_back({variable.name, entry, variable.count, is_vector});
+    entry += variable.count;
+  }
+  return states;
+}
 
 std::map<std::string, json> numbers_of(const json& summary) {
   std::map<std::string, json> numbers;

@@ -1,6 +1,8 @@
-// quantities.hpp - a number of a run by its name, as `ilaw table` and the "expect" of a scene use it.
+// quantities.hpp - numbers of a run by their names, as results and the "expect" of a scene use them.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+
+#include <ilaw/ilaw.h>
 
 #include <nlohmann/json.hpp>
 
@@ -8,8 +10,18 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace ilaw::host {
+
+// A named variable and where it stands in the state of a node. Histories and what is internal mean nothing
+// outside their law and are left out.
+struct ShownState {
+  std::string name;
+  std::size_t entry, count;
+  bool is_vector;
+};
+std::vector<ShownState> shown_states(const ilaw_instance_info& info);
 
 // The numbers of a summary, by names as "energy.kinetic".
 std::map<std::string, nlohmann::json> numbers_of(const nlohmann::json& summary);

@@ -58,30 +58,20 @@ json cited_laws(const Scene& scene) {
 }
 
 json describe_energy(const EnergyReport& energy) {
-  return {{"kinetic", energy.kinetic},
-          {"internal", energy.internal},
-          {"potential", energy.potential},
-          {"external_work", energy.external_work},
-          {"damping_work", energy.damping_work},
-          {"interface_work", energy.interface_work},
-          {"balance_error", energy.balance_error},
-          {"dissipated_friction", energy.by_law[ILAW_ENERGY_FRICTION]},
-          {"dissipated_impact", energy.by_law[ILAW_ENERGY_IMPACT]},
-          {"dissipated_rupture", energy.by_law[ILAW_ENERGY_RUPTURE]},
-          {"stored", energy.by_law[ILAW_ENERGY_STORED]},
-          {"least_dissipation", energy.least_dissipation},
-          {"reaction_work", energy.reaction_work},
-          {"largest", energy.scale}};
+  json described = {{"balance_error", energy.balance_error},
+                    {"least_dissipation", energy.least_dissipation},
+                    {"reaction_work", energy.reaction_work},
+                    {"largest", energy.scale}};
+  for (const auto& [name, value] : named(energy)) described[name] = value;
+  return described;
 }
 
 json describe_heat(const HeatReport& heat) {
-  return {{"stored", heat.stored},
-          {"obstacles", heat.obstacles},
-          {"friction", heat.friction},
-          {"supplied", heat.supplied},
-          {"balance_error", heat.balance_error},
-          {"lowest_temperature", heat.lowest},
-          {"highest_temperature", heat.highest}};
+  json described = {{"balance_error", heat.balance_error},
+                    {"lowest_temperature", heat.lowest},
+                    {"highest_temperature", heat.highest}};
+  for (const auto& [name, value] : named(heat)) described[name] = value;
+  return described;
 }
 
 json describe_statuses(const Tally& tally) {

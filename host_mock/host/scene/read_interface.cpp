@@ -2,9 +2,11 @@
 #include "scene/readers.hpp"
 
 #include "base/words.hpp"
+#include "contact/mortar_surface.hpp"
 #include "scene/arguments.hpp"
 #include "scene/json_text.hpp"
 #include "scene/scene.hpp"
+#include "scene/sharp_nodes.hpp"
 #include "scene/values.hpp"
 
 #include <algorithm>
@@ -20,6 +22,11 @@ namespace ilaw::host {
 namespace {
 
 using nlohmann::json;
+
+// In shortest edges of the face: how far behind the other face edge rows hold its nodes, so that faces on
+// each other do not touch them (an edge of the other face is right to 0.01), and how deep a node cannot have
+// sunk.
+constexpr double edge_depth = 0.02, deepest_edge = 0.5;
 
 // By node, the axes along which motions drive it.
 std::map<int, std::set<int>> driven_axes(const Loads& loads) {
@@ -106,21 +113,25 @@ void read_areas(InterfaceSetup& setup, const Scene& scene) {
       setup.areas[k] = setup.area_factor * point.area;
 }
 
-// "initial": all nodes touch at the start, as the faces of two meshes of one curved face are meant to.
-void read_gap_offset(const json& interface, InterfaceSetup& setup, const Scene& scene) {
+// "initial": all nodes touch at the start, as the faces of two meshes of one curved face are meant to. Edge
+// rows have a depth, and are deeper where the bodies overlap at the start.
+void read_gap_offset(const json& interface, double depth, InterfaceSetup& setup, const Scene& scene) {
   const json offset = interface.value("gap_offset", json(0.0));
-  if (offset.is_number()) {
-    setup.common_gap_offset = offset.get<double>();
-    return;
-  }
+  const bool is_initial = !offset.is_number();
+  if (!is_initial) setup.common_gap_offset = offset.get<double>();
+  if (!is_initial && depth == 0.0) return;
   const Dofs& u = scene.model->initial_displacement();
   setup.counterpart->follow(u);
-  for (std::size_t k = 0; k < setup.nodes.size(); ++k)
-    setup.own_gap_offsets.push_back(
-        setup.counterpart->contact_point(static_cast<int>(k), u, scene.start_time()).gap);
+  for (std::size_t k = 0; k < setup.nodes.size(); ++k) {
+    const ContactPoint point = setup.counterpart->contact_point(static_cast<int>(k), u, scene.start_time());
+    double gap = point.gap - setup.common_gap_offset;
+    if (depth > 0.0 && (point.is_beyond_border || !is_initial)) gap = std::min(gap, 0.0);
+    setup.own_gap_offsets.push_back(gap - depth);
+  }
 }
 
 InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene& scene, const NodeSet& own,
+                          std::unique_ptr<Counterpart> counterpart, double depth,
                           const std::string& pointer) {
   InterfaceSetup setup;
   setup.name = interface.value("name", "interface" + std::to_string(number));
@@ -130,7 +141,7 @@ InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene
   setup.areas = own.areas;
   setup.area_factor = interface.value("area_factor", setup.area_factor);
   for (double& area : setup.areas) area *= setup.area_factor;
-  setup.counterpart = read_counterpart(interface, own, *scene.model, pointer);
+  setup.counterpart = std::move(counterpart);
   setup.arguments = read_arguments(interface.value("parameters", json::object()), setup.nodes.size(),
                                    pointer + "/parameters");
   setup.arguments.fields = read_fields(scene.source, setup.nodes, *scene.model);
@@ -141,7 +152,7 @@ InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene
     throw mistake(pointer + "/death", interface["death"].dump(),
                   "a time after birth, " + json(setup.birth).dump());
   setup.tangent = read_tangent(interface, setup, *scene.model, pointer + "/tangent");
-  read_gap_offset(interface, setup, scene);
+  read_gap_offset(interface, depth, setup, scene);
   if (setup.counterpart->shares_partners()) read_areas(setup, scene);
   setup.keeps_all_active = !interface.value("skip", true);
   return setup;
@@ -156,14 +167,13 @@ InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene
   throw SceneError(pointer, error.what());
 }
 
-}  // namespace
-
-std::unique_ptr<Interface> read_interface(std::size_t number, const Scene& scene) {
-  const json& interface = scene.source["interfaces"][number];
+std::unique_ptr<Interface> make_interface(const json& interface, std::size_t number, const Scene& scene,
+                                          const NodeSet& own, std::unique_ptr<Counterpart> counterpart,
+                                          std::string edges_of = "", double depth = 0.0) {
   const std::string pointer = at("/interfaces", number);
-  const NodeSet own = select_nodes(interface["nodes"], *scene.model, pointer + "/nodes");
   try {
-    InterfaceSetup setup = read_setup(interface, number, scene, own, pointer);
+    InterfaceSetup setup = read_setup(interface, number, scene, own, std::move(counterpart), depth, pointer);
+    setup.edges_of = std::move(edges_of);
     setup.has_driven_nodes = find_driven(setup, scene, pointer + "/nodes");
     auto made = std::make_unique<Interface>(std::move(setup), *scene.model);
     check_temperatures_read(*made, scene, pointer);
@@ -175,6 +185,64 @@ std::unique_ptr<Interface> read_interface(std::size_t number, const Scene& scene
   } catch (const ilaw::error& error) {
     refuse_law(error, interface, pointer);
   }
+}
+
+// ---- edge rows: no averaged constraint belongs to a sharp edge of the main face -------------------------
+
+// A law that can pull bonds the faces, and needs no edge rows. Values per node are of the secondary nodes.
+bool may_have_edge_rows(const json& interface, const Interface& made) {
+  const json parameters = interface.value("parameters", json::object());
+  return (made.info().capabilities & ILAW_CAN_ADHERE) == 0 &&
+         std::none_of(parameters.begin(), parameters.end(),
+                      [](const json& value) { return value.is_object() && value.contains("per_node"); });
+}
+
+// Without the nodes that motions hold, which no impulse moves.
+NodeSet moving_part(const NodeSet& set, const std::map<int, std::set<int>>& driven, std::size_t dimension) {
+  NodeSet part;
+  for (std::size_t k = 0; k < set.nodes.size(); ++k) {
+    const auto found = driven.find(set.nodes[k]);
+    if (found != driven.end() && found->second.size() == dimension) continue;
+    part.nodes.push_back(set.nodes[k]);
+    part.areas.push_back(set.areas[k]);
+  }
+  return part;
+}
+
+// Null if the interface has none, or the main face no sharp node that could move.
+std::unique_ptr<Interface> make_edge_rows(std::size_t number, const Scene& scene) {
+  json interface = scene.source["interfaces"][number];
+  const std::string pointer = at("/interfaces", number);
+  const Interface& made = *scene.interfaces[number];
+  const auto* const faces = dynamic_cast<const MortarSurface*>(made.setup().counterpart.get());
+  if (!faces || !may_have_edge_rows(interface, made)) return nullptr;
+  const NodeSet own = select_nodes(interface["nodes"], *scene.model, pointer + "/nodes");
+  SharpNodes edges = sharp_nodes_of(
+      select_surface(interface["against"]["surface"].get<std::string>(), *scene.model, pointer),
+      *scene.model);
+  const std::map<int, std::set<int>> driven = driven_axes(scene.loads);
+  const auto d = static_cast<std::size_t>(scene.model->dimension());
+  if (moving_part(own, driven, d).nodes.empty()) edges.set = moving_part(edges.set, driven, d);
+  if (edges.set.nodes.empty()) return nullptr;
+  interface["name"] = made.name() + "_edges";
+  auto counterpart = std::make_unique<EdgeRows>(*scene.model, edges.set.nodes, own,
+                                                deepest_edge * edges.shortest_edge, *faces);
+  return make_interface(interface, number, scene, edges.set, std::move(counterpart), made.name(),
+                        edge_depth * edges.shortest_edge);
+}
+
+}  // namespace
+
+void read_interfaces(Scene& scene) {
+  const json& interfaces = scene.source["interfaces"];
+  for (std::size_t i = 0; i < interfaces.size(); ++i) {
+    const std::string pointer = at("/interfaces", i);
+    const NodeSet own = select_nodes(interfaces[i]["nodes"], *scene.model, pointer + "/nodes");
+    scene.interfaces.push_back(make_interface(interfaces[i], i, scene, own,
+                                              read_counterpart(interfaces[i], own, *scene.model, pointer)));
+  }
+  for (std::size_t i = 0; i < interfaces.size(); ++i)
+    if (auto edges = make_edge_rows(i, scene)) scene.interfaces.push_back(std::move(edges));
 }
 
 }  // namespace ilaw::host

@@ -43,9 +43,10 @@ void read_time(const nlohmann::json& time, Scene& scene);
 // A load: what acts on the bodies from outside.
 std::unique_ptr<Load> read_load(const nlohmann::json& load, const Model& model, const std::string& pointer);
 
-// The interface with that number, of a scene whose model and loads were read: its nodes, their counterpart,
-// and the law.
-std::unique_ptr<Interface> read_interface(std::size_t number, const Scene& scene);
+// "/interfaces" of a scene whose model and loads were read: their nodes, counterparts and laws. Behind them
+// come edge rows, an interface for each one with averaged constraints whose law cannot pull: nodes on the
+// border and on sharp edges of the main face against the facets of the secondary one.
+void read_interfaces(Scene& scene);
 // "obstacle" or "against" of an interface between its own nodes and that.
 std::unique_ptr<Counterpart> read_counterpart(const nlohmann::json& interface, const NodeSet& own,
                                               const Model& model, const std::string& pointer);

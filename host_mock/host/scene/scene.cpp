@@ -107,8 +107,7 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   read_time(scene.source["time"], scene);
   if (std::any_of(springs.begin(), springs.end(), [](const Spring& spring) { return spring.damping > 0.0; }))
     scene.loads.push_back(std::make_unique<Dampers>(*scene.model, springs));  // after those with a number
-  for (std::size_t i = 0; i < scene.source["interfaces"].size(); ++i)
-    scene.interfaces.push_back(read_interface(i, scene));
+  read_interfaces(scene);
   check_names(scene);
   read_output(scene.source.value("output", json::object()), scene);
   add_warnings(scene);

@@ -23,7 +23,7 @@ namespace ilaw::host {
 struct ForceSetup {
   std::string name;
   int interface = -1;              // -1: of loads or springs
-  int other_side = -1;             // the interface that both_sides has made; -1: none
+  int other_side = -1;             // the interface of the same joint on the other body; -1: none
   std::vector<std::size_t> loads;  // by number
   std::vector<int> nodes;          // of the loads' nodes, those that count; empty: all
   std::vector<Spring> springs;     // on their own nodes; empty: of loads

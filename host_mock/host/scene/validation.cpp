@@ -1,17 +1,15 @@
-// The one translation unit that compiles valijson, which takes its time.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/validation.hpp"
 
 #include "base/words.hpp"
 #include "scene/json_text.hpp"
 
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validation_results.hpp>
-#include <valijson/validator.hpp>
-
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <iterator>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -20,7 +18,6 @@ namespace ilaw::host {
 namespace {
 
 using nlohmann::json;
-using Adapter = valijson::adapters::NlohmannJsonAdapter;
 
 std::string shortened(const json& value) {
   const std::string text = value.dump();
@@ -37,17 +34,12 @@ const json& resolved(const json& part) {
   return schema().at(json::json_pointer(part["$ref"].get<std::string>().substr(1)));
 }
 
-// The schema of a member or element, null where the schema says nothing of it.
-const json& child(const json& part, const std::string& token, bool is_index) {
+// The schema of a member of an object, null where the schema says nothing of it.
+const json& member_of(const json& part, const std::string& key) {
   static const json nothing;
-  if (part.contains("anyOf"))
-    for (const json& one : part["anyOf"])
-      if (const json& found = child(resolved(one), token, is_index); !found.is_null()) return found;
-  if (is_index) return part.contains("items") ? resolved(part["items"]) : nothing;
-  if (part.contains("properties") && part["properties"].contains(token))
-    return resolved(part["properties"][token]);
-  const json others = part.value("additionalProperties", json());
-  return others.is_object() ? resolved(part["additionalProperties"]) : nothing;
+  const auto properties = part.find("properties"), others = part.find("additionalProperties");
+  if (properties != part.end() && properties->contains(key)) return (*properties)[key];
+  return others != part.end() && others->is_object() ? *others : nothing;
 }
 
 // "array of 1 to 3 numbers".
@@ -95,7 +87,12 @@ std::string allowed(const json& part) {
   return type == "object" ? object_in_words(part) : value_in_words(part);
 }
 
-using Mistakes = std::vector<std::string>;
+// Mistakes and how deep in the scene they are: the deepest are told first.
+struct Mistake {
+  std::size_t depth;
+  std::string text;
+};
+using Mistakes = std::vector<Mistake>;
 
 // The one place of a key in a scene, of some type of a part or of any.
 std::string place_of(const std::string& key) {
@@ -115,103 +112,105 @@ std::string place_of(const std::string& key) {
   return places.size() == 1 ? "; '" + key + "' is a key of another place, " + *places.begin() : "";
 }
 
-void explain_keys(const json& value, const json& part, const std::string& pointer, Mistakes& mistakes) {
+// Keys that the object lacks or may not have.
+void check_keys(const json& value, const json& part, const std::string& pointer, std::size_t depth,
+                Mistakes& mistakes) {
+  for (const json& key : part.value("required", json::array()))
+    if (!value.contains(key.get<std::string>()))
+      mistakes.push_back({depth, SceneError(pointer, "key '" + key.get<std::string>() +
+                                                         "' is missing, found " + shortened(value))
+                                     .what()});
+  if (part.value("additionalProperties", json()) != false) return;
   std::vector<std::string> keys;
   for (const auto& [key, ignored] : part["properties"].items()) keys.push_back(key);
   for (const auto& [key, ignored] : value.items())
     if (!part["properties"].contains(key))
-      mistakes.emplace_back(SceneError(pointer + "/" + key, "unknown key, expected one of: " + joined(keys) +
-                                                                suggestion(key, keys) + place_of(key))
-                                .what());
+      mistakes.push_back(
+          {depth, SceneError(pointer + "/" + key, "unknown key, expected one of: " + joined(keys) +
+                                                      suggestion(key, keys) + place_of(key))
+                      .what()});
 }
 
-// Says in words what valijson found wrong at a value; the pointer is known, the words come from the
-// schema.
-void explain(const json& value, const json& part, const std::string& pointer, const std::string& description,
-             Mistakes& mistakes) {
+// The keys of all kinds that a value may be of.
+json keys_of_kinds(const json& kinds) {
+  json either = {{"properties", json::object()}, {"additionalProperties", false}};
+  for (const json& one : kinds)
+    either["properties"].update(resolved(one).value("properties", json::object()));
+  return either;
+}
+
+bool has_type(const json& value, const std::string& type) {
+  if (type == "integer") return value.is_number_integer();
+  return type == (value.is_number() ? "number" : value.type_name());
+}
+
+// Without what is in it.
+bool is_allowed(const json& value, const json& part) {
+  const auto within = [&](const char* least, const char* most, std::size_t size) {
+    return size >= part.value(least, std::size_t{0}) && size <= part.value(most, SIZE_MAX);
+  };
+  if (part.contains("type") && !has_type(value, part["type"])) return false;
+  if (part.contains("enum") && std::ranges::find(part["enum"], value) == part["enum"].end()) return false;
+  if (value.is_array()) return within("minItems", "maxItems", value.size());
+  if (value.is_string()) {
+    const auto& text = value.get_ref<const std::string&>();
+    const auto begins = [](char byte) { return (byte & 0xC0) != 0x80; };  // a character of UTF-8
+    return std::regex_search(text, std::regex(part.value("pattern", ""))) &&
+           within("minLength", "maxLength", static_cast<std::size_t>(std::ranges::count_if(text, begins)));
+  }
+  if (!value.is_number()) return true;
+  const auto number = value.get<double>();
+  return number >= part.value("minimum", -HUGE_VAL) && number <= part.value("maximum", HUGE_VAL) &&
+         number > part.value("exclusiveMinimum", -HUGE_VAL) &&
+         number < part.value("exclusiveMaximum", HUGE_VAL);
+}
+
+// Of a value that is none of several kinds, the mistakes within it count, whichever kind was meant.
+void check(const json& value, const json& given, const std::string& pointer, std::size_t depth,
+           Mistakes& mistakes) {
+  const json& part = resolved(given);
   const std::size_t before = mistakes.size();
-  if (value.is_object() && part.contains("properties")) {
-    for (const json& key : part.value("required", json::array()))
-      if (!value.contains(key.get<std::string>()))
-        mistakes.emplace_back(
-            SceneError(pointer, "key '" + key.get<std::string>() + "' is missing, found " + shortened(value))
-                .what());
-    if (part.contains("additionalProperties")) explain_keys(value, part, pointer, mistakes);
+  for (const json& one : part.value("anyOf", json::array())) {
+    Mistakes own;
+    check(value, one, pointer, depth, own);
+    if (own.empty()) {
+      mistakes.resize(before);
+      return;
+    }
+    std::ranges::copy_if(own, std::back_inserter(mistakes), [&](const Mistake& a) {
+      return a.depth > depth &&
+             std::ranges::none_of(mistakes, [&](const Mistake& b) { return a.text == b.text; });
+    });
   }
-  if (value.is_object() && part.contains("anyOf")) {
-    json either = {{"properties", json::object()}};
-    for (const json& one : part["anyOf"])
-      either["properties"].update(resolved(one).value("properties", json::object()));
-    explain_keys(value, either, pointer, mistakes);
+  for (std::size_t k = 0; value.is_array() && part.contains("items") && k < value.size(); ++k)
+    check(value[k], part["items"], at(pointer, k), depth + 1, mistakes);
+  if (value.is_object())
+    for (const auto& [key, member] : value.items())
+      if (const json& known = member_of(part, key); !known.is_null())
+        check(member, known, pointer + "/" + key, depth + 1, mistakes);
+  if (value.is_object() && part.contains("properties")) check_keys(value, part, pointer, depth, mistakes);
+  if (part.contains("anyOf") && mistakes.size() == before) {
+    if (value.is_object()) check_keys(value, keys_of_kinds(part["anyOf"]), pointer, depth, mistakes);
+    if (mistakes.size() > before) return;
+  } else if (is_allowed(value, part)) {
+    return;
   }
-  if (mistakes.size() > before) return;
-  if (part.is_null())
-    mistakes.emplace_back(SceneError(pointer, description + " Found " + shortened(value)).what());
-  else
-    mistakes.emplace_back(mistake(pointer, shortened(value), allowed(part)).what());
+  mistakes.push_back({depth, mistake(pointer, shortened(value), allowed(part)).what()});
 }
 
-// valijson names a value as <root>, [3], ["key"].
-std::string token_of(const std::string& context) {
-  const std::string inside = context.substr(1, context.size() - 2);
-  return inside.front() == '"' || inside.front() == '\'' ? inside.substr(1, inside.size() - 2) : inside;
-}
-
-using Context = std::vector<std::string>;
-
-void explain_error(const json& scene, const json& root, const std::string& base,
-                   const valijson::ValidationResults::Error& error, Mistakes& mistakes) {
-  const json* value = &scene;
-  const json* part = &root;
-  std::string pointer = base;
-  for (std::size_t k = 1; k < error.context.size(); ++k) {
-    const std::string token = token_of(error.context[k]);
-    part = &child(*part, token, value->is_array());
-    value = value->is_array() ? &value->at(std::stoul(token)) : &value->at(token);
-    pointer += "/" + token;
-  }
-  explain(*value, *part, pointer, error.description, mistakes);
-}
-
-bool begins_with(const Context& context, const Context& beginning) {
-  return context.size() >= beginning.size() &&
-         std::equal(beginning.begin(), beginning.end(), context.begin());
-}
-
-// valijson also reports all that a mistake is inside of: the most deeply nested ones count.
 void validate(const json& value, const json& part, const std::string& base, Mistakes& mistakes) {
-  // A schema of its own for each part, with the shared definitions beside it.
-  json standalone = part;
-  standalone["definitions"] = schema()["definitions"];
-  valijson::Schema compiled;
-  valijson::SchemaParser parser;
-  parser.populateSchema(Adapter(standalone), compiled);
-  valijson::Validator validator;
-  valijson::ValidationResults results;
-  if (validator.validate(compiled, Adapter(value), &results)) return;
-  std::vector<valijson::ValidationResults::Error> innermost;
-  for (valijson::ValidationResults::Error error; results.popError(error);) {
-    if (std::any_of(innermost.begin(), innermost.end(),
-                    [&](const auto& other) { return begins_with(other.context, error.context); }))
-      continue;
-    std::erase_if(innermost, [&](const auto& other) { return begins_with(error.context, other.context); });
-    innermost.push_back(error);
-  }
-  std::stable_sort(innermost.begin(), innermost.end(),
-                   [](const auto& a, const auto& b) { return a.context.size() > b.context.size(); });
-  for (const auto& error : innermost) explain_error(value, part, base, error, mistakes);
-  const bool tells_of_whole = std::any_of(innermost.begin(), innermost.end(),
-                                          [](const auto& error) { return error.context.size() == 1; });
-  if (!tells_of_whole && value.is_object() && part.contains("additionalProperties"))
-    explain_keys(value, part, base, mistakes);
+  Mistakes own;
+  check(value, part, base, 0, own);
+  std::ranges::stable_sort(own, std::greater<>(), &Mistake::depth);
+  mistakes.insert(mistakes.end(), own.begin(), own.end());
 }
 
 // All at once, as far as they help.
 void refuse(const Mistakes& mistakes) {
   constexpr std::size_t most = 10;
   if (mistakes.empty()) return;
-  std::string text = mistakes.front();
-  for (std::size_t k = 1; k < std::min(most, mistakes.size()); ++k) text += "\n  " + mistakes[k];
+  std::string text = mistakes.front().text;
+  for (std::size_t k = 1; k < std::min(most, mistakes.size()); ++k) text += "\n  " + mistakes[k].text;
   if (mistakes.size() > most) text += "\n  and " + std::to_string(mistakes.size() - most) + " more";
   throw SceneError(text);
 }
@@ -232,8 +231,8 @@ constexpr std::size_t max_text_length = 4096;
 void check_lengths(const json& value, const std::string& pointer, Mistakes& mistakes) {
   const auto check = [&](const std::string& text, const std::string& where) {
     if (text.size() > max_text_length)
-      mistakes.push_back(where + ": found a text of " + std::to_string(text.size()) +
-                         " bytes, expected at most " + std::to_string(max_text_length));
+      mistakes.push_back({0, where + ": found a text of " + std::to_string(text.size()) +
+                                 " bytes, expected at most " + std::to_string(max_text_length)});
   };
   if (value.is_string()) check(value.get_ref<const std::string&>(), pointer);
   if (value.is_array())

@@ -277,7 +277,7 @@ void warn_of_locking(Scene& scene) {
 void add_warnings(Scene& scene) {
   warn_of_times(scene);
   for (const InterfaceWarning& warning : interface_warnings)
-    for (std::size_t i = 0; i < scene.interfaces.size(); ++i)
+    for (std::size_t i = 0; i < scene.source["interfaces"].size(); ++i)
       if (const std::string text = warning.text(scene, *scene.interfaces[i], scene.source["interfaces"][i]);
           !text.empty())
         scene.warnings.push_back(at("/interfaces", i) + warning.key + ": " + text);

@@ -16,6 +16,7 @@
 
 #include <array>
 #include <iosfwd>
+#include <utility>
 
 namespace ilaw::host {
 
@@ -26,6 +27,21 @@ struct EnergyReport {
   double reaction_work;                          // interface_work + dissipated + stored: see docs/scenes.md
   double scale;                                  // largest energy or work so far
 };
+
+// Its parts as results name them.
+inline std::array<std::pair<const char*, double>, 10> named(const EnergyReport& energy) {
+  const auto& by_law = energy.by_law;
+  return {{{"kinetic", energy.kinetic},
+           {"internal", energy.internal},
+           {"potential", energy.potential},
+           {"external_work", energy.external_work},
+           {"damping_work", energy.damping_work},
+           {"interface_work", energy.interface_work},
+           {"dissipated_friction", by_law[ILAW_ENERGY_FRICTION]},
+           {"dissipated_impact", by_law[ILAW_ENERGY_IMPACT]},
+           {"dissipated_rupture", by_law[ILAW_ENERGY_RUPTURE]},
+           {"stored", by_law[ILAW_ENERGY_STORED]}}};
+}
 
 class EnergyBalance {
  public:

@@ -10,7 +10,9 @@
 #include "model/thermal_model.hpp"
 #include "step/heat_exchange.hpp"
 
+#include <array>
 #include <iosfwd>
+#include <utility>
 #include <vector>
 
 namespace ilaw::host {
@@ -24,6 +26,14 @@ struct HeatReport {
   double balance_error = 0.0;
   double lowest = 0.0, highest = 0.0;  // temperature, now
 };
+
+// Its parts as results name them.
+inline std::array<std::pair<const char*, double>, 4> named(const HeatReport& heat) {
+  return {{{"stored", heat.stored},
+           {"obstacles", heat.obstacles},
+           {"friction", heat.friction},
+           {"supplied", heat.supplied}}};
+}
 
 class Temperatures {
  public:

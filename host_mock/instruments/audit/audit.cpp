@@ -14,12 +14,32 @@ namespace {
 
 constexpr double bound_of_momentum = 1e-11, bound_of_work = 1e-9;
 
+// How many contacts may have each node.
+std::vector<int> users_of_nodes(const Scene& scene) {
+  std::vector<int> users(static_cast<std::size_t>(scene.model->node_count()));
+  for (const auto& interface : scene.interfaces)
+    for (const std::vector<int>* nodes : {&interface->nodes(), &interface->setup().counterpart->partners()})
+      for (const int node : *nodes) ++users[static_cast<std::size_t>(node)];
+  return users;
+}
+
+// Nodes that are driven have a small H, within which the solver of coupled contacts finds their impulses.
+bool is_coupled(const Interface& interface, const std::vector<int>& users) {
+  const auto is_shared = [&](int node) { return users[static_cast<std::size_t>(node)] > 1; };
+  const std::vector<int>&nodes = interface.nodes(), &partners = interface.setup().counterpart->partners();
+  return interface.setup().has_driven_nodes || interface.setup().counterpart->shares_partners() ||
+         std::any_of(nodes.begin(), nodes.end(), is_shared) ||
+         std::any_of(partners.begin(), partners.end(), is_shared);
+}
+
 }  // namespace
 
 Audit::Audit(const Scene& scene, const Integrator& integrator)
     : scene_(scene), integrator_(integrator), inverse_mass_(scene.model->mass().cwiseInverse()) {
+  const std::vector<int> users = users_of_nodes(scene);
   for (const auto& interface : scene.interfaces)
-    interfaces_.push_back(std::make_unique<AuditedInterface>(*interface, *scene.model));
+    interfaces_.push_back(
+        std::make_unique<AuditedInterface>(*interface, *scene.model, is_coupled(*interface, users)));
 }
 
 Audit::~Audit() = default;

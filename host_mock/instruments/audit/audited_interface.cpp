@@ -31,27 +31,27 @@ ilaw_delassus_form form_of(const Interface& interface) {
 
 }  // namespace
 
-AuditedInterface::AuditedInterface(const Interface& interface, const Model& model)
+AuditedInterface::AuditedInterface(const Interface& interface, const Model& model, bool is_coupled)
     : interface_(interface),
       model_(model),
       d_(model.dimension()),
       law_(create_law(interface.setup().law, interface.setup().arguments, interface.setup().tangent,
                       interface.library(), d_, form_of(interface))),
       axes_(interface.axes()),
-      is_rigid_(is_rigid(model)),
-      states_(interface.nodes().size()) {}
+      is_coupled_(is_coupled),
+      states_(interface.nodes().size()) {
+  stops_ = !(law_.info().capabilities & ILAW_CAN_STORE_ENERGY) && find_whether_it_stops();
+}
 
-// Whether a node that comes is stopped at once where the gap is closed, with nothing stored.
-bool AuditedInterface::is_rigid(const Model& model) const {
-  if (law_.info().capabilities & (ILAW_CAN_STORE_ENERGY | ILAW_CAN_ADHERE)) return false;
-  const Dofs zero = Dofs::Zero(model.mass().size());
+bool AuditedInterface::find_whether_it_stops() const {
+  const Dofs zero = Dofs::Zero(model_.mass().size());
   const AuditedStep step{zero, zero, zero, zero, 0.0, 1.0, 1.0, 0.0, false};
   Call call;
   call.normal = Vector::Unit(d_, d_ - 1);
   call.v_free = call.v_smooth = call.v_previous = -call.normal;
   call.delassus = Vector::Ones(d_);
   call.parameters = interface_.parameters_of(0);
-  call.state = interface_.state_at(0, model.initial_displacement());
+  call.state = interface_.state_at(0, model_.initial_displacement());
   evaluate(call, 0, step);
   return (call.v_free + call.impulse).dot(call.normal) >= -rounding;
 }
@@ -200,7 +200,7 @@ void AuditedInterface::check_node(int node_index, const AuditedStep& step) {
   const Call call = call_of(node_index, step);
   const Vector change = call.delassus.cwiseProduct(call.impulse);
   const double speed = std::max({step.speed, call.v_free.norm(), call.v_previous.norm(), change.norm()});
-  const double rounded = std::max(rounding * step.farthest, closing * speed * step.dt);
+  const double rounded = std::max(rounding * step.farthest, is_coupled_ ? closing * speed * step.dt : 0.0);
   const double bound = law_bound * speed + rounded / step.dt;
   work_scale_ += call.impulse.norm() * (call.v_free.norm() + call.v_previous.norm() + change.norm()) +
                  call.impulse.norm() * step.speed;
@@ -242,7 +242,8 @@ void AuditedInterface::check_beyond_border(int node_index) const {
 // Once the gap is closed a rigid law lets nothing further in, but as fast as it came out in the step before:
 // then its impulse would do work on the way out.
 void AuditedInterface::check_gap(const Call& call, int node_index, const AuditedStep& step) const {
-  if (!is_rigid_ || call.gap > -rounding * step.farthest) return;
+  const bool is_rigid = stops_ && !(law_.info().capabilities & ILAW_CAN_ADHERE);
+  if (!is_rigid || call.gap > -rounding * step.farthest) return;
   const Vector v = call.v_free + call.delassus.cwiseProduct(call.impulse);
   const double bound = law_bound * std::max(step.speed, call.v_free.norm()) +
                        rounding * step.farthest / step.dt + std::max(0.0, call.v_previous.dot(call.normal));

@@ -23,8 +23,11 @@ struct AuditedStep {
 
 class AuditedInterface {
  public:
-  AuditedInterface(const Interface& interface, const Model& model);
+  // is_coupled: contacts of it share nodes with others, so that they are solved to a residual.
+  AuditedInterface(const Interface& interface, const Model& model, bool is_coupled);
 
+  // Whether its law stores nothing and stops a node at once that comes where the gap is closed.
+  bool stops() const { return stops_; }
   // Before a step: the memory of its law.
   void open(const Dofs& u);
   // After it. Throws AuditFailure, without the step.
@@ -41,7 +44,7 @@ class AuditedInterface {
     std::vector<double> parameters, state, next_state;
     std::array<double, ILAW_ENERGY_COUNT> energy{};
   };
-  bool is_rigid(const Model& model) const;
+  bool find_whether_it_stops() const;
   Call call_of(int node_index, const AuditedStep& step) const;
   void find_velocities(Call& call, int node_index, const AuditedStep& step) const;
   void turn(Call& call, const AuditedStep& step) const;
@@ -59,7 +62,8 @@ class AuditedInterface {
   const int d_;
   ilaw::interface law_;
   std::vector<std::size_t> axes_;
-  bool is_rigid_ = false;
+  const bool is_coupled_;
+  bool stops_ = false;
   std::vector<std::vector<double>> states_;  // by node_index, before the step
   std::array<double, ILAW_ENERGY_COUNT> energy_{};
   double work_scale_ = 0.0, work_rounding_ = 0.0;  // of a step

@@ -1,7 +1,5 @@
 // invariants.hpp - what a scene must fulfil, whatever it is, and by how much rounding may break it.
-//
-// Bounds are sums of what is rounded, times eps, the distance of 1 to the next number, and times
-// `operations`, which stands for the few roundings of each term.
+// Bounds are sums of what is rounded, times `rounding` (ledger.hpp).
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

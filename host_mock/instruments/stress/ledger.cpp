@@ -1,51 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stress/ledger.hpp"
 
+#include "audit/audited_interface.hpp"
 #include "step/dof_loops.hpp"
-#include "stress/draw.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace ilaw::host {
-namespace {
-
-// Whether a law stops a node at once that approaches where the gap is closed. Its node alone, with
-// the parameters of the scene's first.
-bool stops(const nlohmann::json& interface, int dimension) {
-  const std::vector<double> origin = along_last_axis(dimension, 0.0),
-                            normal = along_last_axis(dimension, 1.0),
-                            velocity = along_last_axis(dimension, -1.0);
-  const nlohmann::json point = {{"mass", 1.0}, {"position", origin}, {"velocity", velocity}};
-  nlohmann::json alone = interface;
-  alone.erase("against");
-  alone["nodes"] = "all";
-  alone["obstacle"] = {{"type", "plane"}, {"point", origin}, {"normal", normal}};
-  Scene scene = read_scene({{"model", {{"type", "points"}, {"dimension", dimension}, {"points", {point}}}},
-                            {"time", {{"dt", 1.0}, {"end", 1.0}}},
-                            {"interfaces", {alone}}},
-                           "alone.json");
-  Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
-  integrator.start();
-  return integrator.velocity().tail(1)[0] >= -rounding;
-}
-
-bool stores(const Interface& interface) {
-  return (interface.info().capabilities & ILAW_CAN_STORE_ENERGY) != 0;
-}
-
-bool is_rigid(const Interface& interface, const nlohmann::json& source, int dimension) {
-  return !stores(interface) && stops(source, dimension);
-}
-
-}  // namespace
 
 Ledger::Ledger(const Scene& scene) : scene_(scene), start_depth_(scene.interfaces.size()) {
   const Dofs u = Dofs::Zero(scene.model->mass().size());
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const Interface& interface = *scene.interfaces[i];
     if (interface.setup().counterpart->shares_partners() ||
-        !is_rigid(interface, scene.source["interfaces"][i], scene.model->dimension()))
+        !AuditedInterface(interface, *scene.model, false).stops())
       continue;
     start_depth_[i] = Dofs::Zero(scene.model->node_count());
     for (std::size_t k = 0; k < interface.nodes().size(); ++k)

@@ -1,7 +1,8 @@
 // made_problem.hpp - coupled contacts made from their solution, for any law: velocities and impulses are
 // drawn on the law, then walls and free velocities are chosen so that they solve the problem. So a solution
 // exists, and what a solver calls solved is judged by the law alone, in the scale of the velocities given to
-// it.
+// it. made_problem.cpp draws and makes them, made_calls.cpp gives them to laws and to the solver,
+// made_audit.cpp judges.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,9 +11,9 @@
 #include <ilaw/coupled.hpp>
 #include <ilaw/loader.hpp>
 
-#include <array>
+#include <Eigen/Dense>
+
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 namespace ilaw::host {
@@ -48,54 +49,70 @@ class MadeProblem {
   void add(const MadeProblem& other);
   // From rest, or from the impulses that the last call left.
   ilaw_coupled_report solve(coupled& solver, const ilaw_coupled_options& options);
-  void forget_impulses();
 
   MadeAudit audit(const ilaw_coupled_report& report) const;
   // The same of the solution that the problem was made from.
   MadeAudit audit_of_solution() const;
-  // Largest velocity that the problem brings: free, before the step, of walls, gap over step.
-  double scale() const;
 
   int body_count() const { return static_cast<int>(bodies_.size()); }
   int contact_count() const { return static_cast<int>(contacts_.size()); }
-  // Impulses of all contacts, three components each, and moments behind them.
-  std::vector<double> impulses() const;
   std::vector<double> velocities() const;
 
  private:
-  using Vector = std::array<double, 3>;
-  using Wrench = std::array<double, 6>;  // velocity and spin, or impulse and moment
-  using Matrix = std::array<Wrench, 6>;
+  using Vector = Eigen::Vector3d;
+  using Wrench = Eigen::Matrix<double, 6, 1>;  // velocity and spin, or impulse and moment
+  using Matrix = Eigen::Matrix<double, 6, 6>;
   struct Body {
-    Wrench inverse{};  // masses, then moments of inertia
-    Wrench solution{}, free{}, before{}, velocity{};
+    Wrench inverse = Wrench::Zero();  // masses, then moments of inertia
+    Wrench solution = inverse, free = inverse, before = inverse, velocity = inverse;
   };
   struct Contact {
     std::size_t law = 0;
     std::int32_t body = 0, counterpart = -1;
-    Vector normal{}, arm{}, other_arm{};
+    Vector normal = Vector::Zero(), arm = normal, other_arm = normal;
     double gap = 0.0;
-    Wrench wall{}, wall_before{}, made{}, impulse{};
+    Wrench wall = Wrench::Zero(), wall_before = wall, made = wall, impulse = wall;
     std::vector<double> state;
     bool has_broken = false;  // its bond, at the solution of a round: then the law is told so
   };
-
   struct Group;
 
   int width() const { return form_ == ILAW_DELASSUS_TRANSVERSE_SPIN ? 6 : 3; }
   bool rotates() const { return setup_.rotate || form_ >= ILAW_DELASSUS_TRANSVERSE; }
+
+  Wrench random(Draw& draw, int count) const;
   void draw_bodies(Draw& draw);
-  ilaw_bodies describe_bodies(std::vector<double>& inertia);
   void draw_contact(Draw& draw, Contact& contact);
-  void make(Draw& draw);
+  Wrench draw_velocity(Draw& draw, Contact& contact);
+  void make(const std::vector<Wrench>& v_free);
+  bool is_well_posed(const Contact& contact, const Wrench& v) const;
+  void sort_by_law();
+
+  // Calls visit with each body of a contact, and the matrix from its motion to its part of the contact's.
+  template <class Visit>
+  void for_bodies(const Contact& contact, Visit visit) const;
   Wrench relative(const Contact& contact, Wrench Body::*motion) const;
-  void add_impulse(const Contact& contact, const Wrench& impulse, std::vector<Wrench>& sums) const;
+  // By body, of all contacts.
+  std::vector<Wrench> sums_of(Wrench Contact::*impulse) const;
   Matrix delassus(const Contact& contact) const;
-  Wrench smooth(const Contact& contact) const;
+  // Velocity of a contact without the impulse of any.
+  Wrench smooth(const Contact& contact) const { return relative(contact, &Body::free) - contact.wall; }
+  Wrench before(const Contact& contact) const {
+    return relative(contact, &Body::before) - contact.wall_before;
+  }
+
+  bool reads_smooth(std::size_t law) const { return (laws_[law]->info().inputs & ILAW_INPUT_V_SMOOTH) != 0; }
+  ilaw_batch batch_of(const Contact& contact) const;
+  std::vector<double> first_state(const Contact& contact) const;
+  Wrench form_of(const Contact& contact) const;
   // Impulse of the law alone at this free velocity.
   Wrench answer(const Contact& contact, const Wrench& v_free) const;
+  ilaw_bodies describe_bodies(std::vector<double>& inertia);
+
+  // Largest velocity that the problem brings: free, before the step, of walls, gap over step.
+  double scale() const;
+  double size_of(const Matrix& h, const Wrench& impulse) const;
   double least_error(const Contact& contact, const Matrix& h, const Wrench& v_free, const Wrench& r) const;
-  bool is_well_posed(const Contact& contact, const Wrench& v) const;
   MadeAudit audit(Wrench Contact::*impulse, Wrench Body::*velocity) const;
 
   ilaw_delassus_form form_;

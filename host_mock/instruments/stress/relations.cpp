@@ -169,9 +169,9 @@ class Check {
   void fail(const std::string& name, const std::string& how) { report_.broken.push_back(name + ": " + how); }
 
   // What a run of the same scene in another way must give to the bit.
-  void same_bits(const char* name, const std::function<std::string()>& other, const std::string& expected) {
+  void same_bits(const char* name, std::string (Check::*other)() const, const std::string& expected) {
     try {
-      if (other() != expected) return fail(name, "the bits are others");
+      if ((this->*other)() != expected) return fail(name, "the bits are others");
     } catch (const std::exception& stop) {
       return fail(name, std::string("stops: ") + stop.what());
     }
@@ -187,26 +187,13 @@ class Check {
   }
 
   void for_bits() {
-    same_bits(
-        "with two threads", [&] { return on_two_threads(); }, state_);
-    same_bits(
-        "beside itself", [&] { return beside_itself(); }, state_ + state_);
-    same_bits(
-        "resumed", [&] { return resumed(); }, bits_of(run_) + energies_of(run_));
-    same_bits(
-        "with contacts one by one",
-        [&] {
-          return state_of_a_run([](Scene& scene) {
-            for (const auto& interface : scene.interfaces) interface->step_one_by_one();
-          });
-        },
-        state_);
-    // Sums of energies run over other contacts.
-    same_bits(
-        "without skipping", [&] { return without_skip(); }, bits_of(run_));
-    if (!source_.contains("fields"))
-      same_bits(
-          "with parameters in reverse order", [&] { return permuted(); }, state_);
+    const std::string bits = bits_of(run_);
+    same_bits("with two threads", &Check::on_two_threads, state_);
+    same_bits("beside itself", &Check::beside_itself, state_ + state_);
+    same_bits("resumed", &Check::resumed, bits + energies_of(run_));
+    same_bits("with contacts one by one", &Check::one_by_one, state_);
+    same_bits("without skipping", &Check::without_skip, bits);  // sums of energies run over other contacts
+    if (!source_.contains("fields")) same_bits("with parameters in reverse order", &Check::permuted, state_);
   }
 
   static std::string bits_of(const RelatedRun& run) {
@@ -230,16 +217,17 @@ class Check {
   }
 
   std::string on_two_threads() const {
-    omp_set_num_threads(2);
-    std::string state;
-    try {
-      state = state_of_a_run();
-    } catch (...) {
-      omp_set_num_threads(1);
-      throw;
-    }
-    omp_set_num_threads(1);
-    return state;
+    struct Two {
+      Two() { omp_set_num_threads(2); }
+      ~Two() { omp_set_num_threads(1); }
+    } two;
+    return state_of_a_run();
+  }
+
+  std::string one_by_one() const {
+    return state_of_a_run([](Scene& scene) {
+      for (const auto& interface : scene.interfaces) interface->step_one_by_one();
+    });
   }
 
   std::string resumed() const {

@@ -23,26 +23,16 @@ double rounded(double value, int digits) {
   return std::strtod(formatted("%.*e", digits - 1, value).c_str(), nullptr);
 }
 
-void add_without_each(const json& scene, const json::json_pointer& list, std::vector<json>& made) {
-  if (!scene.contains(list)) return;
-  for (std::size_t i = 0; i < scene[list].size(); ++i) {
-    made.push_back(scene);
-    made.back()[list].erase(i);
-  }
-}
-
-// Loads name points by number: the first is kept.
-void add_with_fewer_points(const json& scene, std::vector<json>& made) {
-  const json::json_pointer points("/model/points");
-  if (!scene.contains(points)) return;
-  const std::size_t count = scene[points].size();
-  for (std::size_t part = count; part > 1; part /= 2)
+// Leaves out halves of a list, quarters and so on to single entries. Loads name points by number: a scene
+// that names one that is gone is refused.
+void add_with_less_of(const json& scene, const json::json_pointer& list, std::vector<json>& made) {
+  const std::size_t count = scene.contains(list) ? scene[list].size() : 0;
+  for (std::size_t part = (count + 1) / 2; part > 0; part = part > 1 ? (part + 1) / 2 : 0)
     for (std::size_t from = 0; from < count; from += part) {
-      json fewer = json::array();
-      for (std::size_t i = from; i < std::min(count, from + (part + 1) / 2); ++i)
-        fewer.push_back(scene[points][i]);
       made.push_back(scene);
-      made.back()[points] = fewer;
+      json& less = made.back()[list];
+      less.erase(less.begin() + static_cast<std::ptrdiff_t>(from),
+                 less.begin() + static_cast<std::ptrdiff_t>(std::min(count, from + part)));
     }
 }
 
@@ -126,10 +116,9 @@ std::vector<json> simpler_than(const json& scene) {
     made.push_back(scene);
     made.back()["time"]["end"] = end * part;
   }
-  add_with_fewer_points(scene, made);
+  add_with_less_of(scene, json::json_pointer("/model/points"), made);
   add_with_fewer_pairs(scene, made);
-  add_without_each(scene, json::json_pointer("/loads"), made);
-  add_without_each(scene, json::json_pointer("/interfaces"), made);
+  for (const char* list : {"/loads", "/interfaces"}) add_with_less_of(scene, json::json_pointer(list), made);
   add_with_fewer_parameters(scene, made);
   add_with_rounder_numbers(scene, made);
   return made;

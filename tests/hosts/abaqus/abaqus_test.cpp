@@ -164,6 +164,17 @@ TEST_F(Vfric, RestsWhateverItDidBefore) {
     }
 }
 
+// What holds without saying so slides at the predicted speed, with the kinetic coefficient.
+TEST_F(Vfric, PredictsForALawWithoutStatus) {
+  setenv("ILAW_PATH", ILAW_SILENT, 1);
+  Points block;
+  block.interaction = "SILENT";
+  block.constants = {mu, 0.05, 1e9};
+  block.begin({0, 0, 0}, {0.9 * mu * pressure, 0, 0});
+  ASSERT_EQ(block.step(), "");
+  EXPECT_NEAR(block.f[0], -0.05 * pressure, 4 * rounding * pressure);
+}
+
 // On a plane that lies askew a slide keeps its direction; in two dimensions it stops like that in three.
 TEST_F(Vfric, AnyAxesAndDimensions) {
   Points askew, plane;

@@ -5,72 +5,32 @@ import threading
 import numpy as np
 import pytest
 from engine import Engine, bar, wobble
+from hosts import FLOOR, Hook, traced
 
 import ilaw
-from ilaw_openradioss import NAMES, Refused, Run
-
-FLOOR = ([0, 0, 0], [0, 0, 1])
+from ilaw_openradioss import Refused
 
 
 def weight(time, x):
     return np.array([0.0, 0.0, -20.0])
 
 
-class Hook:
-    """sync of a deck, with a run of its own."""
-
-    def __init__(self, folder, contacts, **options):
-        self.contacts, self.options, self.run = contacts, dict(folder=folder, **options), None
-
-    def __call__(self, context, time, step):
-        if self.run is None:
-            self.run = Run(context, time, step, self.contacts, **self.options)
-        else:
-            self.run.step(time, step)
-
-
 def contact(law="contact", **given):
     return [dict(law=law, nodes=[1], **({"plane": FLOOR} | given))]
 
 
-def traced(engine, hook, steps):
-    """Time, X and V after each cycle."""
-    rows = [(t, engine.arrays["X"].copy(), engine.arrays["V"].copy()) for t in engine.run(hook, steps)]
-    return [np.array(column) for column in zip(*rows)]
-
-
-# Of the cases of docs/schemes.md the one with energies, at variable steps; tests/hosts/protocols has the others.
-
-
-@pytest.mark.parametrize("h", [1e-3, 7e-4, 1.3e-3])
-def test_a_block_slides_and_stops(tmp_path, h):
+def test_energies_and_forces_of_a_slide_are_in_its_history(tmp_path):
     hook = Hook(tmp_path, contact("coulomb", friction=0.3), history="history.csv")
-    t, x, v = traced(Engine([[0, 0, 0]], v=[2.0, 0, 0], mass=2.0, force=weight), hook, wobble(h, 1.0))
-    assert t[np.argmax(np.abs(v[:, 0, 0]) < 1e-12)] == pytest.approx(2 / 3, abs=2 * h)
-    assert x[-1, 0, 0] == pytest.approx(2 / 3, abs=3 * h)
+    t, _, _ = traced(Engine([[0, 0, 0]], v=[2.0, 0, 0], mass=2.0, force=weight), hook, wobble(1e-3, 1.0))
     # The energy of 4 J is friction, and the work of the impulses but for the weight's, which they carry.
-    assert hook.run.energy[ilaw.Energy.FRICTION] == pytest.approx(4.0, rel=3 * h)
+    assert hook.run.energy[ilaw.Energy.FRICTION] == pytest.approx(4.0, rel=3e-3)
     assert -hook.run.work == pytest.approx(hook.run.energy[:3].sum(), rel=1e-12)
     table = np.genfromtxt(tmp_path / "history.csv", delimiter=",", names=True)
     assert len(table) == len(t) and table["coulomb0fz"][5:] == pytest.approx(20.0, rel=1e-12)
-    assert table["time"][0] == 0.0 and table["friction"][-1] == pytest.approx(4.0, rel=3 * h)
+    assert table["time"][0] == 0.0 and table["friction"][-1] == pytest.approx(4.0, rel=3e-3)
 
 
-# Shapes.
-
-
-def test_a_point_slides_inside_nothing_but_on_shapes(tmp_path):
-    """A point thrown at a sphere and at a cylinder turns by the law of reflection."""
-    for shape in (dict(sphere=([0, 0, -1], 1.0)), dict(cylinder=([0, 0, -1], [0, 1, 0], 1.0))):
-        engine = Engine([[0.1, 0, 1.0]], v=[0, 0, -1.0])
-        given = dict(law="contact", restitution=1.0, nodes=[1], **shape)
-        t, x, v = traced(engine, Hook(tmp_path, [given]), [1e-3] * 1400)
-        n = np.array([0.1, 0, (1 - 0.01) ** 0.5])
-        reflected = np.array([0, 0, -1.0]) + 2 * n[2] * n
-        assert v[-1, 0] == pytest.approx(reflected, abs=1e-3)
-
-
-# Deformable bodies.
+# Deformable bodies; waves, and the toughness of a bond, are those of the decks (test_examples.py).
 
 LENGTH, SPEED, WAVE, LINE = 1.0, 1.0, 5000.0, 3.2  # of steel, 20 mm x 20 mm: rho A = 3.2 kg/m, sound at 5000 m/s
 
@@ -88,19 +48,6 @@ def bar_engine(bodies, cells=50, cross=2, **given):
 def face(engine, at):
     """User numbers of the nodes at x."""
     return engine.arrays["ITAB"][np.abs(engine.start[:, 0] - at) < 1e-9].tolist()
-
-
-def test_a_bar_on_a_wall_has_the_force_of_the_wave(tmp_path):
-    engine = bar_engine([(0.0, -SPEED)])
-    hook = Hook(tmp_path, [dict(law="contact", nodes=face(engine, 0.0), plane=([0, 0, 0], [1, 0, 0]))], history="h.csv")
-    step = 0.9 * LENGTH / 50 / WAVE
-    t, x, v = traced(engine, hook, [step] * int(6e-4 / step))
-    table = np.genfromtxt(tmp_path / "h.csv", delimiter=",", names=True)
-    plateau = table["contact0fx"][(table["time"] > 1e-4) & (table["time"] < 3e-4)]
-    assert plateau.mean() == pytest.approx(LINE * WAVE * SPEED, rel=2e-3)
-    # It flies off, with some of its energy in vibration.
-    assert engine.arrays["MS"] @ v[-1][:, 0] == pytest.approx(LINE * LENGTH * SPEED, rel=2e-2)
-    assert x[:, :, 0].min() > -1e-12
 
 
 QUAD = [0, 1, 3, 2]  # around a face, whose nodes come line by line
@@ -125,18 +72,6 @@ def test_two_bars_exchange_their_velocities(tmp_path, turned):
     assert sum(momentum) == pytest.approx(-LINE * LENGTH * SPEED, rel=1e-12)
     assert momentum[1] == pytest.approx(-LINE * LENGTH * SPEED, rel=2e-2)
     assert hook.run.energy[:3].sum() < 0.02 * 0.5 * LINE * LENGTH * SPEED**2
-
-
-def test_a_bond_between_bars_takes_its_toughness(tmp_path):
-    engine = bar_engine([(0.0, 2.0), (-LENGTH, -2.0)])
-    n = len(engine.start) // 2
-    right, left = ([int(u) for u in face(engine, 0.0) if (u <= n) == is_right] for is_right in (True, False))
-    quad, area = [left[k] for k in QUAD], 1e-4
-    bond = dict(law="cohesive", strength=1e7, toughness=10.0, area=area, nodes=right)
-    hook = Hook(tmp_path, [bond | dict(facets=[quad])])
-    step = 0.9 * LENGTH / 50 / WAVE
-    traced(engine, hook, [step] * 300)
-    assert hook.run.energy[ilaw.Energy.RUPTURE] == pytest.approx(4 * area * 10.0, rel=1e-9)
 
 
 def test_a_bond_between_bars_is_continued_with_the_same_bits_and_its_history(tmp_path):
@@ -271,31 +206,13 @@ def refusal(tmp_path, given, match, **engine):
         traced(made, Hook(tmp_path, given), [1e-3] * 30)
 
 
-def test_nodes_that_a_law_cannot_act_on_are_named(tmp_path):
-    both = [dict(law="contact", nodes=[1, 2], plane=FLOOR)]
-    refusal(tmp_path, both, "node 2: has a kinematic condition", bound=[1])
-    refusal(tmp_path, both, "node 1: has no mass", mass=[0.0, 1.0])
-    refusal(tmp_path, [dict(law="contact", nodes=[1, 7], plane=FLOOR)], "node 7: not in the model")
-    refusal(tmp_path, [dict(law="contact", nodes=[1, 1], plane=FLOOR)], "node 1 twice")
-    one_of = "expected law, nodes, and one of facets, plane, sphere, cylinder"
-    refusal(tmp_path, [dict(law="contact", nodes=[1])], one_of)
-    refusal(tmp_path, [dict(law="contact", nodes=[1], plane=FLOOR, sphere=([0, 0, 0], 1))], one_of)
-    refusal(tmp_path, [dict(law="contact", nodes=[1], plane=([0, 0, 0], [0, 0, 0]))], r"normal: \[0, 0, 0\]")
+def test_a_contact_has_one_shape(tmp_path):
+    refusal(tmp_path, [dict(law="contact", nodes=[1])], "expected law, nodes, and one of facets, plane, sphere, cylinder")
 
 
 def test_two_sides_on_two_ranks_are_refused(tmp_path, monkeypatch):
     monkeypatch.setenv("PMI_SIZE", "2")
     refusal(tmp_path, [dict(law="contact", nodes=[1], facets=[[2, 3, 4, 5]])], "node 3, 4, 5 is on another rank")
-
-
-def test_parameters_are_refused_by_the_law(tmp_path):
-    refusal(tmp_path, contact("coulomb", friction=-0.1), "friction.*-0.1")
-    refusal(tmp_path, contact("coulomb", fricton=0.1), "fricton")
-    refusal(tmp_path, contact("cohesive", strength=1.0, toughness=1.0), "area")
-
-
-def test_a_step_that_a_spring_does_not_stand_is_refused(tmp_path):
-    refusal(tmp_path, contact("penalty", stiffness=1e9, integration="explicit"), "expected at most .* /DTIX")
 
 
 def test_a_held_component_against_the_normal_is_named(tmp_path):
@@ -310,16 +227,6 @@ def test_a_held_component_against_the_normal_is_named(tmp_path):
     engine = Engine([[0, 0, 0]], mass=2.0, force=weight)
     t, x, v = traced(engine, Hook(tmp_path, [held[0] | dict(held="")]), wobble(1e-3, 0.2))
     assert v[-1, 0, 0] == pytest.approx(10.0 * 0.48 * t[-1], rel=1e-2)
-
-
-def test_a_release_that_renames_context_is_told_what_is_missing(tmp_path):
-    context = Engine([[0, 0, 0]]).context
-    for name in NAMES:
-        less = {key: value for key, value in context.items() if key != name + "_ptr"}
-        with pytest.raises(Refused, match=f"context has no {name}_ptr"):
-            Run(less, 0.0, 0.0, contact(), folder=tmp_path)
-    with pytest.raises(Refused, match="MS_type is 'float'"):
-        Run(context | {"MS_type": "float"}, 0.0, 0.0, contact(), folder=tmp_path)
 
 
 def test_sync_keeps_its_run(tmp_path):

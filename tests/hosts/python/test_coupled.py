@@ -1,11 +1,11 @@
 """Contacts that share bodies: closed forms, a stack, ties, no copies, ranks as threads, refusals."""
 import copy
 import gc
-import threading
 import weakref
 
 import numpy as np
 import pytest
+from ranks import on_two_ranks
 
 import ilaw
 from ilaw import coupled
@@ -119,65 +119,6 @@ def test_arrays_live_as_long_as_they_are_needed():
     Solver().solve(bodies, [contacts], time=H)
     np.testing.assert_allclose(bodies.velocity, [[-1, -1, 0]] * 3, atol=1e-15)
     assert len(junk) == 200
-
-
-def on_two_ranks(count, solve):
-    """What solve(rank, exchange) returns on two threads that are ranks."""
-    barrier, table, found = threading.Barrier(2, timeout=20), [None, None], [None, None]
-
-    class Threads:
-        def __init__(self, rank):
-            self.rank = rank
-
-        def combine(self, values, by):
-            table[self.rank] = values.copy()
-            barrier.wait()
-            values[...] = by(table[0], table[1])
-            barrier.wait()
-
-        def sum_bodies(self, values):
-            assert values.shape in ((count, 1), (count, 3))
-            self.combine(values, np.add)
-
-        def largest(self, values):
-            self.combine(values, np.maximum)
-
-        def sum(self, values):
-            self.combine(values, np.add)
-
-    def run(rank):
-        found[rank] = solve(rank, Threads(rank))
-
-    threads = [threading.Thread(target=run, args=(rank,)) for rank in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    return found
-
-
-def test_ranks_agree():
-    """Two threads as ranks: each has half of a stack's contacts and all bodies, and ends with what one rank finds."""
-    count = 8
-    v, body, counterpart = stack(count)
-    one = Bodies(v_free=v, inverse_mass=1.0, v_previous=np.zeros_like(v))
-    all_contacts = Contacts(law(), body=body, counterpart=counterpart, gap=0.0, normal=UP)
-    all_contacts.initialise()
-    Solver().solve(one, [all_contacts], time=H, tolerance=1e-13)
-
-    def solve(rank, exchange):
-        mine = body % 2 == rank
-        # Bodies are owned by the first rank, and copies at the second.
-        bodies = Bodies(v_free=v, inverse_mass=1.0, v_previous=np.zeros_like(v), owned=count if rank == 0 else 0)
-        contacts = Contacts(law(), body=body[mine], counterpart=counterpart[mine], gap=0.0, normal=UP)
-        contacts.initialise()
-        report = Solver().solve(bodies, [contacts], time=H, tolerance=1e-13, exchange=exchange)
-        return report.sweeps, bodies.velocity
-
-    found = on_two_ranks(count, solve)
-    assert found[0][0] == found[1][0]
-    for _, velocity in found:
-        np.testing.assert_allclose(velocity, one.velocity, atol=1e-15)
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])

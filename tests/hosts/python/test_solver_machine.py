@@ -1,5 +1,5 @@
 """One solver of coupled contacts as a state machine: drawn sequences of contacts that come, go and change places, warm
-starts, steps that are repeated, refusals, other threads, processes and problems.
+starts, steps that are repeated, refusals, other threads, processes, ranks and problems.
 
 A solver keeps its memory and none of the numbers in it. So each solve must have the bits of a new solver, with the
 contacts in another order as well; and the laws alone, asked at the velocities that came out, must answer with the
@@ -10,9 +10,11 @@ import pathlib
 import signal
 import sys
 import threading
+import types
 import typing
 
 import numpy as np
+from ranks import on_two_ranks
 
 import ilaw
 from ilaw.coupled import Bodies, Contacts, Solver
@@ -89,11 +91,13 @@ class Kind:
     def law_of(self, contact):
         return contact % len(self.laws)
 
-    def contacts(self, law, chosen, impulse=None, moment=None, state=None, bad=None):
+    def contacts(self, law, chosen, impulse=None, moment=None, state=None, bad=None, first=0):
         normal, arm = self.normal[chosen].copy(), -RADIUS * self.normal[chosen]
         (arm if self.form == "full" else normal)[chosen == bad] = np.nan
         turns = {"arm": arm, "counterpart_arm": -arm}
-        made = Contacts(self.laws[law], body=self.body[chosen], counterpart=self.counterpart[chosen],
+        other = self.counterpart[chosen]
+        made = Contacts(self.laws[law], body=(self.body[chosen] - first) % BODIES,
+                        counterpart=np.where(other < 0, -1, (other - first) % BODIES),
                         normal=normal, gap=self.gap[chosen], area=1.0,
                         energy=True, impulse=impulse, moment=moment, state=state, **(turns if self.rotates else {}))
         if state is None:
@@ -235,11 +239,15 @@ class Machine:
 
     # ---- a step
 
-    def call(self, solver, order, action, **options):
+    def call(self, solver, order, action, first=0, **options):
+        """first: the body that comes first, the others behind it in turn."""
         kind = self.kind
-        v, w = self.v + [0, 0, -G * H], self.w.copy()
-        turns = {"spin_free": w, "spin_previous": self.w, "inverse_inertia": 1 / kind.inertia} if kind.rotates else {}
-        bodies = Bodies(v_free=v, v_previous=self.v, inverse_mass=1 / kind.mass, **turns)
+        v, v_previous, w, w_previous, mass, inertia = (
+            np.roll(array, -first, axis=0)
+            for array in (self.v + [0, 0, -G * H], self.v, self.w, self.w, kind.mass, kind.inertia))
+        turns = {"spin_free": w, "spin_previous": w_previous, "inverse_inertia": 1 / inertia} if kind.rotates else {}
+        owned = {"owned": BODIES // 2} if "exchange" in options else {}
+        bodies = Bodies(v_free=v, v_previous=v_previous, inverse_mass=1 / mass, **turns, **owned)
         bad = self.order[int(action.bad * len(self.order))] if action.bad >= 0 and self.order else None
         groups, chosen = [], []
         for law in range(len(kind.laws)):
@@ -247,7 +255,7 @@ class Machine:
             impulse, moment = (np.array([self.kept[c][i] * action.warm for c in mine]).reshape(-1, 3) for i in (0, 1))
             state = np.array([self.kept[c][2] for c in mine]).reshape(len(mine), kind.laws[law].state_size)
             moment = moment if kind.form == "transverse_spin" else None
-            groups.append(kind.contacts(law, mine, impulse, moment, state, bad))
+            groups.append(kind.contacts(law, mine, impulse, moment, state, bad, first))
             chosen.append(mine)
         before = [[array.copy() for array in outputs(bodies, group)] for group in groups]
         try:
@@ -261,7 +269,8 @@ class Machine:
                     for group, mine in zip(groups, chosen) for k, contact in enumerate(mine)}
         said = tuple(np.asarray(value).tobytes() if not isinstance(value, (str, tuple, type(None))) else value
                      for value in vars(report).values())
-        return Found(contacts, bodies.velocity, bodies.spin if kind.rotates else self.w, said), report
+        v, w = (np.roll(array, first, axis=0) for array in (bodies.velocity, bodies.spin if kind.rotates else w))
+        return Found(contacts, v, w, said), report
 
     def solve(self, action):
         new, report = self.call(Solver(), self.order, action)
@@ -278,10 +287,27 @@ class Machine:
         for one in found:
             self.same(new, one)
         self.judge(action, new, report)
+        if action.by == "" and action.bad < 0:
+            self.ranks(action)
         if action.accepts:
             self.v, self.w = new.v, new.w
             self.kept.update({contact: arrays[:3] for contact, arrays in new.contacts.items()})
             self.steps += 1
+
+    def ranks(self, action):
+        """The step on two ranks, each with its own half of the bodies first, and their contacts."""
+        first = 0, BODIES // 2
+
+        def solve(rank, exchange):
+            mine = [contact for contact in self.order if (self.kind.body[contact] < BODIES // 2) == (rank == 0)]
+            return self.call(Solver(), mine, action, first[rank], exchange=exchange)
+        (one, report), (other, same) = on_two_ranks(BODIES, solve, first)
+        demand(one is not None and other is not None, "refused on ranks:", report, same)
+        demand(np.array_equal(one.v, other.v) and np.array_equal(one.w, other.w), "copies are not as their owners have them")
+        demand((report.sweeps, report.residual) == (same.sweeps, same.residual), "ranks say other things")
+        both = types.SimpleNamespace(message=report.message or same.message, bad_count=0, work=report.work + same.work)
+        self.judge(action, one._replace(contacts=one.contacts | other.contacts), both)
+        self.seen["on ranks"] = self.seen.get("on ranks", 0) + (not both.message and len(self.order) > 0)
 
     @staticmethod
     def same(new, found):
@@ -392,4 +418,4 @@ def test_a_solver_gives_what_a_new_one_gives():
     grains, seen = Grains(), {}
     sequence, why = search(SEED, SEQUENCES, drawn_sequence, lambda drawn: failure_of(drawn, grains, seen), plainer)
     assert not sequence, f"seed {SEED}: {why}\n" + "\n".join(map(str, sequence))
-    assert seen["judged"] > SEQUENCES
+    assert seen["judged"] > SEQUENCES and seen["on ranks"] > SEQUENCES / 2

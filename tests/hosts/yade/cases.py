@@ -33,16 +33,6 @@ def velocity(i=0):
     return list(O.bodies[i].state.vel)
 
 
-def bounce(e, dt):
-    """Thrown at a wall with velocity 1 and nothing else: leaves with e."""
-    scene("contact", [((0, 0, 0.6), 0.5, (0.3, 0, -1))], [(2, 1)], dt=dt, restitution=e)
-    lowest = []
-    for _ in range(round(0.15 / dt)):
-        O.step()
-        lowest.append(O.bodies[0].state.pos[2] - 0.5)
-    return {"v": velocity(), "lowest": min(lowest), "lost": float(contacts.energy.sum()), "mass": O.bodies[0].state.mass}
-
-
 def collision(e):
     """Two unequal spheres, head on, one in flight and one at rest; the collider has no pair of them at first."""
     spheres = [((0, 0, 0), 0.5, (0, 0, 0)), ((1.6, 0, 0), 0.4, (-1, 0, 0))]
@@ -195,7 +185,6 @@ figures = {
     "gears": {str(dt): gears(dt) for dt in STEPS},
     "turntables": {str(dt): turntable(dt) for dt in STEPS},
     "goes on with moments": goes_on_with_moments(),
-    "bounces": {f"{e} {dt}": bounce(e, dt) for e, dt in ((0.0, 1e-3), (0.4, 7e-4), (1.0, 1.3e-3))},
     "changed": changed(),
     "collisions": {str(e): collision(e) for e in (0.0, 0.5, 1.0)},
     "rolls": {str(dt): roll(dt) for dt in (2e-3, 1.3e-3, 1.7e-3)},

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The engine of api/yade in the system's Yade, headless: closed forms, refusals, runs that go on, the example."""
+"""The engine of api/yade in the system's Yade, headless: closed forms, refusals, runs that go on, the example.
+One sphere that does not turn: tests/hosts/protocols."""
 import json
 import os
 import re
@@ -26,14 +27,6 @@ def figures(tmp_path_factory):
     folder = tmp_path_factory.mktemp("yade")
     yade(folder, Path(__file__).with_name("cases.py"), folder / "figures.json")
     return json.loads((folder / "figures.json").read_text())
-
-
-def test_a_sphere_leaves_a_wall_with_e_times_its_speed(figures):
-    for name, found in figures["bounces"].items():
-        e = float(name.split()[0])
-        np.testing.assert_allclose(found["v"], [0.3, 0, e], atol=1e-14, err_msg=name)
-        assert found["lowest"] > -1e-14, name
-        assert found["lost"] == pytest.approx(0.5 * found["mass"] * (1 - e**2), abs=1e-14), name
 
 
 def test_two_spheres_keep_momentum_and_e(figures):

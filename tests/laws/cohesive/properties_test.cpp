@@ -1,6 +1,8 @@
 // Cohesive zones through the ABI: friction as they break, and rounding.
 #include "bond.hpp"
 
+#include "support/sizes.hpp"
+
 namespace ilaw::testing {
 namespace {
 
@@ -46,7 +48,7 @@ TEST(CohesiveProperties, FrictionGrowsAsTheBondBreaks) {
 TEST(CohesiveProperties, WhatRoundsTakesNothingOffABond) {
   Draw draw(16);
   for (const double coupling : {0.0, 1e-13})
-    for (int k = 0; k < 2000; ++k) {
+    for (int k = 0; k < part_of(2000); ++k) {
       NodeRun node("cohesive", {{{"strength", 1e9}, {"toughness", 1e9}}, {}}, 1.0, ILAW_DELASSUS_FULL);
       node.h = {1.0, 1.0, 1.0, 0.0, 0.0, coupling};
       const Vector free = draw.vector(1.0);

@@ -40,17 +40,12 @@ double largest_gain(const Body& body, double h_omega, double h_omega_t, double m
 
 TEST(RoughImpact, NeverGainsUpToTheCriticalStep) {
   for (const double restitution : {1.0, 0.8, 0.3})
-    for (const double friction : {0.1, 1.0, inf_value})
+    for (const double friction : {0.0, 0.1, 1.0, inf_value})
       for (const double h_omega : {0.1, 0.5, 1.0, 1.5, 1.9, 1.999})
         for (const double h_omega_t : {0.3, 1.7, 1.999})
           for (const double middle : {0.3, -0.2})
             EXPECT_LE(largest_gain({friction, restitution}, h_omega, h_omega_t, middle, 10000), 1e-14)
                 << "mu " << friction << ", e " << restitution << ", h w " << h_omega << " and " << h_omega_t;
-}
-
-TEST(RoughImpact, NeverGainsInAMillionSteps) {
-  for (const double h_omega : {0.1, 0.5, 1.0, 1.5, 1.9, 1.999})
-    EXPECT_LE(largest_gain({0.01, 1.0}, h_omega, 0.7 * h_omega, 0.3, 1000000), 1e-14) << "h w " << h_omega;
 }
 
 // ---- its limits, its state

@@ -106,54 +106,6 @@ TEST(Impact, HasOrderTwoAgainstAStop) {
 
 // ---- energy
 
-struct Extremes {
-  double gained = 0.0, lost = 0.0, deepest = 0.0;  // of one step; over the run; energies over the first one
-};
-
-// A mass on a spring about -middle, with h omega of the step 1, against a stop at 0. The energy of a step is
-// that of the scheme, v^2/2 + w^2 (u_n + d)(u_{n+1} + d)/2, and what the law stores.
-Extremes swing(double restitution, double h_omega, double middle, int steps) {
-  NodeRun node("impact", frictionless(restitution), h_omega);
-  double u = 1.0, v = 0.0, before = 0.0, first = 0.0, size = 0.0;
-  Extremes found;
-  for (int k = 0; k < steps; ++k) {
-    node.gap = u;
-    node.v_previous = {v, 0.0, 0.0};
-    if (node.step({v - h_omega * (u + middle), 0.0, 0.0}) != ILAW_OK) ADD_FAILURE() << node.report.reason;
-    v = node.v[0];
-    const double next = u + h_omega * v;
-    const double energy = 0.5 * (v * v + (u + middle) * (next + middle)) + node.energy[ILAW_ENERGY_STORED];
-    size = std::max(size, 0.5 * (v * v + (u + middle) * (u + middle)));
-    if (k == 0) first = before = energy;
-    found.gained = std::max(found.gained, energy - before);
-    found.lost = std::max(found.lost, std::abs(energy - first));
-    found.deepest = std::max(found.deepest, -next);
-    before = energy;
-    u = next;
-  }
-  found.gained /= size;
-  found.lost /= size;
-  return found;
-}
-
-TEST(Impact, NeverGainsUpToTheCriticalStep) {
-  for (const double restitution : {1.0, 0.95, 0.8, 0.5, 0.1})
-    for (const double h_omega : {0.1, 0.5, 1.0, 1.5, 1.9, 1.95, 1.999})
-      for (const double middle : {0.3, 0.0, -0.2}) {
-        const Extremes found = swing(restitution, h_omega, middle, 100000);
-        EXPECT_LE(found.gained, 1e-14) << "e " << restitution << ", h w " << h_omega << ", " << middle;
-        EXPECT_LE(found.deepest, 1e-15) << "e " << restitution << ", h w " << h_omega << ", " << middle;
-      }
-}
-
-TEST(Impact, KeepsTheEnergyOfAMillionSteps) {
-  for (const double h_omega : {0.1, 0.5, 1.0, 1.5, 1.9, 1.999}) {
-    const Extremes found = swing(1.0, h_omega, 0.3, 1000000);
-    EXPECT_LE(found.lost, 1e-12) << "h w " << h_omega;
-    EXPECT_LE(found.deepest, 1e-15) << "h w " << h_omega;
-  }
-}
-
 // An impact under a constant force, anywhere in its step, loses (1 - e^2) w^2/(2 H) over both impulses, and
 // the node goes on along its parabola.
 TEST(Impact, LosesTheEnergyOfItsRestitution) {
@@ -222,8 +174,6 @@ TEST(Impact, NeverPassesAtAnyPositionStep) {
       }
     }
 }
-
-// ---- its limits, its state
 
 }  // namespace
 }  // namespace ilaw::testing

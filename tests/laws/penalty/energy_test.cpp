@@ -220,6 +220,19 @@ TEST(PenaltyStick, GivesBackNoMoreThanItMust) {
   EXPECT_GT(reversed, 500);
 }
 
+// Along one axis: the free velocity stays where it turned round by less than the velocity before.
+TEST(PenaltyStick, LeavesWhatTurnedRoundInPart) {
+  for (const double turned : {0.1, 0.5, 0.9, 1.5}) {
+    NodeRun node =
+        run_of({{{"stiffness", inf_value}, {"friction", inf_value}}, {{"integration", "implicit"}}}, 1.0,
+               ILAW_DELASSUS_SCALAR, 3);
+    node.gap = -1.0;
+    node.v_previous = {0.0, 2.0, 0.0};
+    ASSERT_EQ(node.step({-1.0, -2.0 * turned, 0.0}), ILAW_OK) << node.report.reason;
+    EXPECT_NEAR(node.v[1], -2.0 * std::min(turned, 1.0), 1e-12) << turned;
+  }
+}
+
 // A step is continuous in the motion before it, whatever that turns to: cut in 64 parts, the largest change
 // of a circle of such motions has no part that is a quarter of it, where a jump would leave one as large as
 // all.

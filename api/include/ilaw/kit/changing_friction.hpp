@@ -157,12 +157,17 @@ void solve_changing_friction_by(const friction_problem<V>& p, const Mu& mu_at, c
   tried.contact.mu[0] = tried.contact.mu[1] = mu_at(a.speed).value;
   solve(tried, a.friction, h[0] > 0.0);
 }
+// A call: the solver of a changing coefficient needs it at several places, and would hold a copy at each.
+template <class V>
+[[gnu::noinline]] mask_of<V> solve_friction_apart(const friction_problem<V>& p, friction_answer<V>& a) {
+  return solve_friction(p, a);
+}
 template <class V, class Mu>
 mask_of<V> solve_changing_friction(const friction_problem<V>& p, const Mu& mu, changing_answer<V>& a) {
   mask_of<V> left = none<V>();
   solve_changing_friction_by(
       p, mu, a, [&](const friction_problem<V>& tried, friction_answer<V>& found, mask_of<V> needed) {
-        left = left | (solve_friction(tried, found) & needed);
+        left = left | (solve_friction_apart(tried, found) & needed);
       });
   return left;
 }
@@ -171,7 +176,7 @@ void solve_changing_friction_exactly(const friction_problem<double>& p, const Mu
                                      changing_answer<double>& a) {
   solve_changing_friction_by(p, mu, a,
                              [](const friction_problem<double>& tried, friction_answer<double>& found, bool) {
-                               if (solve_friction(tried, found)) solve_friction_exactly(tried, found);
+                               if (solve_friction_apart(tried, found)) solve_friction_exactly(tried, found);
                              });
 }
 
@@ -182,7 +187,6 @@ struct changing_friction {
   using problem = changing_problem<V, Mu<V>>;
   using answer = changing_answer<V>;
 
-  bool asks() const { return false; }
   template <class Node>
   status_of<V> step(Node& node) const requires is_transverse<Node> {
     const changing_slip<V> found =
@@ -191,7 +195,7 @@ struct changing_friction {
     return found.status;
   }
   template <class Node>
-  asked<V> ask(Node& node, problem& open) const requires has_tangents<Node> {
+  asked<V> ask(Node& node, problem& open) const requires(!is_transverse<Node>) {
     open.mu = law().coefficient_in(node);
     return ask_friction(node, contact(node), 0.0, 0.0, open.friction);
   }

@@ -10,7 +10,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/symmetric.hpp>
+#include <ilaw/kit/vector.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 

@@ -152,6 +152,8 @@ ILAW_KIT_INLINE V logarithm(V x) {
 
 inline double exp(double x) { return detail::exponential(x); }
 inline double log(double x) { return detail::logarithm(x); }
+ILAW_KIT_INLINE pack_of_one exp(pack_of_one x) { return exp(x.v); }
+ILAW_KIT_INLINE pack_of_one log(pack_of_one x) { return log(x.v); }
 template <int Registers>
 ILAW_KIT_INLINE pack_of<Registers> exp(pack_of<Registers> x) {
   return detail::exponential(x);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/state.hpp>
-#include <ilaw/kit/symmetric.hpp>
+#include <ilaw/kit/law.hpp>
+#include <ilaw/kit/vector.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
@@ -44,6 +44,9 @@ ILAW_KIT_INLINE status_of<pack_of<Registers>> select(pack_mask<Registers> m, sta
   return status_of<V>::from(select(m, V(a.code), V(b.code)));
 }
 ILAW_KIT_INLINE status_of<double> select(bool m, status_value a, status_value b) { return m ? a : b; }
+ILAW_KIT_INLINE status_of<pack_of_one> select(mask_of_one m, status_value a, status_value b) {
+  return m.m ? a : b;
+}
 
 // ---- why a law refuses a node
 

@@ -6,8 +6,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/level.hpp>
-
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
@@ -15,7 +13,47 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 #include <utility>
+
+// ---- instruction-set levels
+
+// ilaw_add_plugin compiles a law's source once per level, with the compiler's -march. Each level lives in an
+// inline namespace of its own, so that the linker never mixes their code. All levels give the same bits: they
+// do the same IEEE operations in the same order.
+#ifndef ILAW_KIT_LEVEL
+#define ILAW_KIT_LEVEL baseline
+#endif
+
+// Whether better levels are compiled beside this one. It then serves processors older than 2013 and must give
+// the bits, not the speed: all its nodes go the careful way, and the fast loops are not compiled.
+#ifdef ILAW_KIT_OTHER_LEVELS
+#define ILAW_KIT_IS_SPARE true
+#else
+#define ILAW_KIT_IS_SPARE false
+#endif
+
+#ifdef __FAST_MATH__
+#error "the kit needs IEEE arithmetic: compile without -ffast-math"
+#endif
+
+// Small functions of packs: a call would pass their registers through memory.
+#define ILAW_KIT_INLINE [[gnu::always_inline]] inline
+#define ILAW_KIT_LAMBDA __attribute__((always_inline))
+
+// Functions that a loop over packs rarely needs. On a device a call would put the node into memory.
+#if defined(ILAW_KIT_DEVICE)
+#define ILAW_KIT_APART ILAW_KIT_INLINE
+#else
+#define ILAW_KIT_APART [[gnu::noinline]]
+#endif
+
+// A value that is kept in a vector register: compilers would else read parts of it from memory again.
+#if defined(__SSE2__)
+#define ILAW_KIT_IN_REGISTER(value) asm("" : "+v"(value))
+#else
+#define ILAW_KIT_IN_REGISTER(value) static_cast<void>(value)
+#endif
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
@@ -267,6 +305,69 @@ struct pack_of {
 
 using pack = pack_of<1>;
 
+// A pack of one lane, for nodes one by one: on a device, and where a loop leaves some. Not a double, with
+// which laws mean the scalar fallback and may compute in another way.
+struct mask_of_one {
+  bool m;
+
+  ILAW_KIT_INLINE friend mask_of_one operator&(mask_of_one a, mask_of_one b) { return {a.m && b.m}; }
+  ILAW_KIT_INLINE friend mask_of_one operator|(mask_of_one a, mask_of_one b) { return {a.m || b.m}; }
+  ILAW_KIT_INLINE friend mask_of_one operator!(mask_of_one a) { return {!a.m}; }
+  ILAW_KIT_INLINE friend mask_of_one operator&(mask_of_one a, bool b) { return {a.m && b}; }
+  ILAW_KIT_INLINE friend mask_of_one operator&(bool a, mask_of_one b) { return {a && b.m}; }
+  ILAW_KIT_INLINE friend mask_of_one operator|(mask_of_one a, bool b) { return {a.m || b}; }
+  ILAW_KIT_INLINE friend mask_of_one operator|(bool a, mask_of_one b) { return {a || b.m}; }
+  ILAW_KIT_INLINE friend bool any(mask_of_one a) { return a.m; }
+};
+
+struct pack_of_one {
+  static constexpr int size = 1;
+  using mask = mask_of_one;
+  double v;
+
+  pack_of_one() = default;
+  pack_of_one(const pack_of_one&) = default;
+  ILAW_KIT_INLINE pack_of_one& operator=(const pack_of_one& a) {  // as pack_of, for g++ 12
+    v = a.v;
+    return *this;
+  }
+  ILAW_KIT_INLINE pack_of_one(double x) : v(x) {}
+  template <class T>
+  ILAW_KIT_INLINE explicit operator T() const requires std::is_arithmetic_v<T> {
+    return static_cast<T>(v);
+  }
+
+#define ILAW_KIT_OPERATION(op) \
+  ILAW_KIT_INLINE friend pack_of_one operator op(pack_of_one a, pack_of_one b) { return a.v op b.v; }
+  ILAW_KIT_OPERATION(+)
+  ILAW_KIT_OPERATION(-)
+  ILAW_KIT_OPERATION(*)
+  ILAW_KIT_OPERATION(/)
+#undef ILAW_KIT_OPERATION
+#define ILAW_KIT_COMPARISON(op) \
+  ILAW_KIT_INLINE friend mask operator op(pack_of_one a, pack_of_one b) { return {a.v op b.v}; }
+  ILAW_KIT_COMPARISON(<)
+  ILAW_KIT_COMPARISON(<=)
+  ILAW_KIT_COMPARISON(>)
+  ILAW_KIT_COMPARISON(>=)
+  ILAW_KIT_COMPARISON(==)
+  ILAW_KIT_COMPARISON(!=)
+#undef ILAW_KIT_COMPARISON
+  ILAW_KIT_INLINE friend pack_of_one operator-(pack_of_one a) { return -a.v; }
+  ILAW_KIT_INLINE friend pack_of_one& operator+=(pack_of_one& a, pack_of_one b) { return a = a + b; }
+  ILAW_KIT_INLINE friend pack_of_one& operator-=(pack_of_one& a, pack_of_one b) { return a = a - b; }
+  ILAW_KIT_INLINE friend pack_of_one& operator*=(pack_of_one& a, pack_of_one b) { return a = a * b; }
+
+  ILAW_KIT_INLINE friend pack_of_one select(mask m, pack_of_one a, pack_of_one b) { return m.m ? a.v : b.v; }
+  ILAW_KIT_INLINE friend pack_of_one zero_unless(mask m, pack_of_one a) { return m.m ? a.v : 0.0; }
+  ILAW_KIT_INLINE friend pack_of_one larger(pack_of_one a, pack_of_one b) { return kit::larger(a.v, b.v); }
+  ILAW_KIT_INLINE friend pack_of_one smaller(pack_of_one a, pack_of_one b) { return kit::smaller(a.v, b.v); }
+  ILAW_KIT_INLINE friend pack_of_one positive_part(pack_of_one x) { return kit::positive_part(x.v); }
+  ILAW_KIT_INLINE friend pack_of_one square_root(pack_of_one x) { return kit::square_root(x.v); }
+  ILAW_KIT_INLINE friend pack_of_one absolute(pack_of_one x) { return kit::absolute(x.v); }
+  ILAW_KIT_INLINE double operator[](int /*lane*/) const { return v; }
+};
+
 template <class V>
 using mask_of = decltype(V{} < V{});
 
@@ -318,6 +419,11 @@ struct bits_of<double> {
   ILAW_KIT_INLINE static type of(std::uint64_t all) { return all; }
   ILAW_KIT_INLINE static double number(type bits) { return std::bit_cast<double>(bits); }
 };
+template <>
+struct bits_of<pack_of_one> : bits_of<double> {
+  ILAW_KIT_INLINE static type in(pack_of_one x) { return std::bit_cast<type>(x.v); }
+  ILAW_KIT_INLINE static pack_of_one number(type bits) { return std::bit_cast<double>(bits); }
+};
 
 // Whether numbers differ in any bit, as 0 and -0 do.
 ILAW_KIT_INLINE one_mask have_other_bits(one a, one b) {
@@ -334,6 +440,9 @@ ILAW_KIT_INLINE pack_mask<Registers> have_other_bits(pack_of<Registers> a, pack_
 ILAW_KIT_INLINE bool have_other_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) != std::bit_cast<std::uint64_t>(b);
 }
+ILAW_KIT_INLINE mask_of_one have_other_bits(pack_of_one a, pack_of_one b) {
+  return {have_other_bits(a.v, b.v)};
+}
 
 // ---- the lanes of a V
 
@@ -347,6 +456,7 @@ ILAW_KIT_INLINE unsigned mask_bits(pack_mask<Registers> m) {
   return m.bits();
 }
 ILAW_KIT_INLINE unsigned mask_bits(bool m) { return m ? 1U : 0U; }
+ILAW_KIT_INLINE unsigned mask_bits(mask_of_one a) { return a.m ? 1U : 0U; }
 template <class V>
 ILAW_KIT_INLINE mask_of<V> mask_from(unsigned bits) {
   return mask_of<V>::each([&](int k) ILAW_KIT_LAMBDA { return mask_of_bits(bits >> (register_lanes * k)); });
@@ -355,7 +465,12 @@ template <>
 ILAW_KIT_INLINE bool mask_from<double>(unsigned bits) {
   return bits != 0;
 }
+template <>
+ILAW_KIT_INLINE mask_of_one mask_from<pack_of_one>(unsigned bits) {
+  return {bits != 0};
+}
 ILAW_KIT_INLINE double lane_of(double x, int /*lane*/) { return x; }
+ILAW_KIT_INLINE double lane_of(pack_of_one x, int /*lane*/) { return x.v; }
 template <int Registers>
 ILAW_KIT_INLINE double lane_of(pack_of<Registers> x, int lane) {
   return x[lane];

@@ -18,9 +18,9 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// The walks of this level, in the order of the laws.
+// The parts of this level, in the order of the laws.
 template <template <class> class... Laws>
-inline constexpr ilaw_kit_walk walks[] = {walk_batch<Laws<double> >...};
+inline constexpr ilaw_kit_part parts[] = {part_of<Laws<double> >...};
 
 // The functions of the law at a place of its library, which the law does not know.
 template <std::size_t Place, class Law>
@@ -35,16 +35,16 @@ struct functions {
       *result = nullptr;
       return ilaw_refuse(&error, ILAW_UNSUPPORTED, "ILAW_ISA is '%s', expected baseline, v3 or v4", cap);
     }
-    const ilaw_kit_walk* best = best_walks();
-    return detail::create<Law>(abi(), id, setup, best ? best[Place] : nullptr, result, error);
+    const ilaw_kit_part* best = best_parts();
+    return detail::create<Law>(abi(), id, setup, best ? best[Place] : part_of<Law>, result, error);
   }
 
-  // The level whose walks an instance uses.
+  // The level whose loops an instance uses.
   static const char* ILAW_CALL instruction_set(const ilaw_instance* opaque) {
-    [[maybe_unused]] const ilaw_kit_walk walk = of<Law>(opaque).walk;
+    [[maybe_unused]] const ilaw_kit_part* part = of<Law>(opaque).part;
 #if defined(ILAW_KIT_OTHER_LEVELS)
     for (const other_level& level : other_levels)
-      if (walk && level.walks && walk == level.walks()[Place]) return level.name;
+      if (level.parts && part == &level.parts()[Place]) return level.name;
 #endif
     return "baseline";
   }
@@ -144,10 +144,10 @@ using library_of = library<(checked<Laws>() && ...), Laws<double>...>;
 }  // namespace ilaw::kit::detail
 
 // ILAW_PLUGIN(name, version, vendor, licence, law...) makes the one exported symbol of a law library; at the
-// other levels, the hidden one that gives their walks.
-#if defined(ILAW_KIT_WALKS)
+// other levels, the hidden one that gives their parts.
+#if defined(ILAW_KIT_PARTS)
 #define ILAW_PLUGIN(name, version, vendor, licence, ...) \
-  extern "C" const ilaw_kit_walk* ILAW_KIT_WALKS() { return ilaw::kit::detail::walks<__VA_ARGS__>; }
+  extern "C" const ilaw_kit_part* ILAW_KIT_PARTS() { return ilaw::kit::detail::parts<__VA_ARGS__>; }
 #else
 #define ILAW_PLUGIN(name, version, vendor, licence, ...)                                         \
   extern "C" ILAW_EXPORT const ilaw_plugin* ILAW_CALL ILAW_ENTRY(void) {                         \

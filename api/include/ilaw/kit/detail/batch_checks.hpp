@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ilaw/kit/detail/dispatch.hpp>
 #include <ilaw/kit/detail/view.hpp>
 #include <ilaw/kit/math.hpp>
 #include <ilaw/kit/window.hpp>
@@ -24,6 +25,9 @@ struct instance_base {
   int per_node_parameters[most_parameters];  // which of the law's
   const table* node_tables = nullptr;        // by parameter: over fields that come per node; null: none
   std::uint32_t amount_count;
+  const ilaw_kit_part* part;       // of the level that the instance uses
+  ilaw_kit_loop loop, float_loop;  // null: floats are converted to doubles
+  careful_function careful;
 
   tangents tangents_from() const {
     if (dimension < 3) return tangents::of_plane;
@@ -90,7 +94,8 @@ inline view_options options_of(const instance_base& made, const ilaw_batch& b, s
           .moves = false,
           .has_balance = false,
           .has_amounts = false,
-          .tables = made.node_tables};
+          .tables = made.node_tables,
+          .careful = made.careful};
 }
 
 // Flags that say what becomes of bonds are for instances that can hold them.

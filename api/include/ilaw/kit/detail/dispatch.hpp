@@ -5,7 +5,7 @@
 #pragma once
 
 #include <ilaw/ilaw.h>
-#include <ilaw/kit/detail/level.hpp>
+#include <ilaw/kit/pack.hpp>
 
 #include <atomic>
 #include <cstdint>
@@ -19,14 +19,23 @@
 #include <cfenv>
 #endif
 
-// Runs a checked batch of an instance; the pointers lead to types that are the same at every level.
-// found: a tally. An array of them, one per law of the library, is what a level gives to the baseline.
-using ilaw_kit_walk = void (*)(const void* instance, const ilaw_batch& batch, void* found);
+// A loop over a view, and what is done to the windows of a block before and after it. The pointers lead to
+// types that are the same at every level.
+using ilaw_kit_loop = void (*)(const void* law, const void* view, void* found);
+using ilaw_kit_windows = void (*)(const void* window, const void* place, void* block);
+// What is compiled of a law for each level. An array of them, one per law of the library, is what a level
+// gives to the baseline, which does all the rest.
+struct ilaw_kit_part {
+  ilaw_kit_loop (*loop)(const void* instance, bool of_floats);  // null: floats have none
+  ilaw_kit_windows read, write;                                 // null: the law has none
+  void (*to_doubles)(const float* from, double* to, std::int64_t count);
+  void (*to_floats)(const double* from, float* to, std::int64_t count);
+};
 
 #if defined(ILAW_KIT_OTHER_LEVELS)
 // Null where the library was built without that level.
-extern "C" [[gnu::weak, gnu::visibility("hidden")]] const ilaw_kit_walk* ilaw_kit_walks_v3();
-extern "C" [[gnu::weak, gnu::visibility("hidden")]] const ilaw_kit_walk* ilaw_kit_walks_v4();
+extern "C" [[gnu::weak, gnu::visibility("hidden")]] const ilaw_kit_part* ilaw_kit_parts_v3();
+extern "C" [[gnu::weak, gnu::visibility("hidden")]] const ilaw_kit_part* ilaw_kit_parts_v4();
 #endif
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
@@ -97,22 +106,22 @@ inline std::uint32_t levels_served() {
 struct other_level {
   const char* name;
   std::uint32_t bit;
-  const ilaw_kit_walk* (*walks)();
+  const ilaw_kit_part* (*parts)();
 };
-inline constexpr other_level other_levels[] = {{"v4", bits({4}), ilaw_kit_walks_v4},
-                                               {"v3", bits({3}), ilaw_kit_walks_v3}};
+inline constexpr other_level other_levels[] = {{"v4", bits({4}), ilaw_kit_parts_v4},
+                                               {"v3", bits({3}), ilaw_kit_parts_v3}};
 #endif
 
-// The walks of the best level that was compiled, that the processor has and the environment allows; null: the
+// The parts of the best level that was compiled, that the processor has and the environment allows; null: the
 // baseline's own.
-inline const ilaw_kit_walk* best_walks() {
+inline const ilaw_kit_part* best_parts() {
 #if defined(ILAW_KIT_OTHER_LEVELS)
   const char* cap = std::getenv("ILAW_ISA");
   const auto allowed = [cap](const char* level) {
     return !cap || (std::strcmp(cap, "baseline") != 0 && std::strcmp(cap, level) >= 0);
   };
   for (const other_level& level : other_levels)
-    if (level.walks && allowed(level.name) && (levels_served() & level.bit) != 0) return level.walks();
+    if (level.parts && allowed(level.name) && (levels_served() & level.bit) != 0) return level.parts();
 #endif
   return nullptr;
 }

@@ -12,72 +12,102 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // ---- the loop of a batch
 
-template <class Law, template <class> class Frame, template <class> class Delassus>
-run_function<double> loop_of(const instance<Law>& made) {
-  using plain = kernel<Law, pack, double, Frame, Delassus>;
-  using solver = solver_kernel<Law, pack, double, Frame, Delassus>;
+// What is asked of a kernel: its loop over a view, or its careful_function.
+template <class Number>
+struct loop_over {
+  using view_type = view<Number>;
+  using function = ilaw_kit_loop;
+  template <class Kernel>
+  static constexpr function of = Kernel::run;
+};
+template <class Number>
+struct careful_over {
+  using view_type = view<Number>;
+  using function = careful_function;
+  template <class Kernel>
+  static constexpr function of = Kernel::careful_kernel::run_nodes;
+};
+
+template <class Law, class Part, template <class> class Frame, template <class> class Delassus>
+typename Part::function loop_of(const instance<Law>& made) {
+  using plain = kernel<Law, pack, typename Part::view_type, Frame, Delassus>;
+  using solver = solver_kernel<Law, pack, typename Part::view_type, Frame, Delassus>;
   using Wide = law_on_t<Law, pack>;
   using node_type = typename plain::node_type;
   if constexpr (can_ask<Wide, node_type> && !can_choose<Wide, node_type>) {
-    return solver::run;
+    return Part::template of<solver>;
   } else {
     if constexpr (can_ask<Wide, node_type>)
-      if (made.asks) return solver::run;
+      if (made.asks) return Part::template of<solver>;
     static_assert(
         requires(const Wide& law, node_type& n) { law.step(n); },
         "the law has neither step nor ask for nodes of this form of H and frame");
-    return plain::run;
+    return Part::template of<plain>;
   }
 }
 
-template <class Law, template <class> class Delassus>
-run_function<double> choose_frame(const instance<Law>& made) {
-  if (made.frame == ILAW_FRAME_LOCAL) return loop_of<Law, local_frame, Delassus>(made);
+template <class Law, class Part, template <class> class Delassus>
+typename Part::function choose_frame(const instance<Law>& made) {
+  if (made.frame == ILAW_FRAME_LOCAL) return loop_of<Law, Part, local_frame, Delassus>(made);
   if constexpr (needs_no_tangents<Law> && !std::is_same_v<Delassus<double>, full<double>>)
-    if (made.dimension == 3 && !made.has_tangent) return loop_of<Law, normal_frame, Delassus>(made);
-  return loop_of<Law, axes_frame, Delassus>(made);
+    if (made.dimension == 3 && !made.has_tangent) return loop_of<Law, Part, normal_frame, Delassus>(made);
+  return loop_of<Law, Part, axes_frame, Delassus>(made);
 }
-template <class Law>
-run_function<double> choose_loop(const instance<Law>& made) {
+template <class Law, class Part>
+typename Part::function choose_loop(const instance<Law>& made) {
   if constexpr (serves_spins<Law>)
-    if (made.has_spins()) return choose_frame<Law, transverse_spin>(made);
+    if (made.has_spins()) return choose_frame<Law, Part, transverse_spin>(made);
   if constexpr (serves_transverse<Law>)
-    if (made.is_transverse()) return choose_frame<Law, transverse>(made);
-  if constexpr (serves_full<Law>) return choose_frame<Law, full>(made);
+    if (made.is_transverse()) return choose_frame<Law, Part, transverse>(made);
+  if constexpr (serves_full<Law>) return choose_frame<Law, Part, full>(made);
   return nullptr;
 }
 // Floats have a loop of their own where a node takes so little that to convert them by blocks would count: in
 // the local frame, without solver. Null elsewhere.
-template <class Law>
-run_function<float> choose_float_loop([[maybe_unused]] const instance<Law>& made) {
-  using plain = kernel<Law, pack, float, local_frame, transverse>;
+template <class Law, class Part>
+typename Part::function choose_float_loop([[maybe_unused]] const instance<Law>& made) {
+  using plain = kernel<Law, pack, view<float>, local_frame, transverse>;
   using Wide = law_on_t<Law, pack>;
   using node_type = typename plain::node_type;
-  constexpr bool is_plain =
-      !can_ask<Wide, node_type> || (can_choose<Wide, node_type> && !has_state<Law> && !has_history<Law>);
+  constexpr bool is_plain = requires(const Wide& law, node_type& n) { law.step(n); }
+  &&(!requires { typename Law::problem; } || (!has_state<Law> && !has_window<Law>));
   if constexpr (serves_transverse<Law> && is_plain)
     if (made.is_transverse() && !made.has_spins() && made.frame == ILAW_FRAME_LOCAL && !made.asks)
-      return plain::run;
+      return Part::template of<plain>;
   return nullptr;
 }
+template <class Law>
+careful_function choose_careful(const instance<Law>& made) {
+  if (made.numbers == ILAW_NUMBERS_FLOAT)
+    if (const auto of_floats = choose_float_loop<Law, careful_over<float>>(made)) return of_floats;
+  return choose_loop<Law, careful_over<double>>(made);
+}
 
-// An ilaw_kit_walk: a checked batch from end to end, compiled for this level.
+template <class Law>
+ilaw_kit_loop loop_of_instance(const void* opaque, bool of_floats) {
+  const auto& made = *static_cast<const instance<Law>*>(opaque);
+  return of_floats ? choose_float_loop<Law, loop_over<float>>(made)
+                   : choose_loop<Law, loop_over<double>>(made);
+}
+template <class Law>
+inline constexpr ilaw_kit_part part_of = [] {
+  ilaw_kit_part part{loop_of_instance<Law>, nullptr, nullptr, convert<float, double>, convert<double, float>};
+  if constexpr (has_window<Law>) part.read = read_windows, part.write = write_windows;
+  return part;
+}();
+
+// A checked batch from end to end.
 // Not inlined: nothing of it may be computed before the floating-point environment is set.
 template <class Law>
-[[gnu::noinline]] void walk_batch(const void* opaque, const ilaw_batch& batch, void* found) {
-  const auto& made = *static_cast<const instance<Law>*>(opaque);
-  auto& all = *static_cast<tally*>(found);
+[[gnu::noinline]] tally walk_batch(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
-  constexpr int columns = 2 * (state_numbers<Law> + (has_history<Law> || has_state<Law> ? frame_size : 0));
+  constexpr int columns = 2 * (state_numbers<Law> + (has_window<Law> || has_state<Law> ? frame_size : 0));
   alignas(64) double state[columns * block_nodes + 1], parameters[parameter_count<Law> * block_nodes];
   if (made.numbers == ILAW_NUMBERS_DOUBLE)
-    all = batch_walk<double, double, has_window<Law>>(made, batch, state, parameters)
-              .run(choose_loop(made), &law);
-  else if (const auto loop = choose_float_loop(made))
-    all = batch_walk<float, float, has_window<Law>>(made, batch, state, parameters).run(loop, &law);
-  else
-    all = batch_walk<float, double, has_window<Law>>(made, batch, state, parameters)
-              .run(choose_loop(made), &law);
+    return batch_walk<double, double>(made, batch, state, parameters).run(made.loop, &law);
+  if (made.float_loop)
+    return batch_walk<float, float>(made, batch, state, parameters).run(made.float_loop, &law);
+  return batch_walk<float, double>(made, batch, state, parameters).run(made.loop, &law);
 }
 
 // ---- why a node is bad
@@ -165,27 +195,19 @@ const char* reason_text(const instance<Law>& made, const ilaw_batch& batch, cons
 
 // ---- evaluate and initialise
 
-inline ilaw_result refuse(ilaw_report* report, const char* reason, ilaw_result code = ILAW_INVALID_ARGUMENT) {
-  if (report)
-    sized::write(report, {.struct_size = 0,
-                          .reserved = 0,
-                          .bad_count = 0,
-                          .first_bad_node = -1,
-                          .reason = reason,
-                          .stable_velocity_step = infinity});
-  return code;
-}
-template <class Law>
-ilaw_result give_report(ilaw_report* report, const instance<Law>& made, const ilaw_batch& batch,
-                        const tally& found, const char* reason = nullptr) {
+inline ilaw_result give_report(ilaw_report* report, const tally& found, const char* reason) {
   if (report)
     sized::write(report, {.struct_size = 0,
                           .reserved = 0,
                           .bad_count = found.bad_count,
                           .first_bad_node = found.first_bad_node,
-                          .reason = found.bad_count == 0 || reason ? reason : reason_text(made, batch, found),
+                          .reason = reason,
                           .stable_velocity_step = found.stable_velocity_step});
   return found.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
+}
+inline ilaw_result refuse(ilaw_report* report, const char* reason, ilaw_result code = ILAW_INVALID_ARGUMENT) {
+  give_report(report, {}, reason);
+  return code;
 }
 
 // The beginning of evaluate and initialise: the instance, the batch, and the environment of laws as long as
@@ -238,9 +260,9 @@ ilaw_result ILAW_CALL evaluate_counting(const ilaw_instance* opaque, const ilaw_
   const ilaw_batch& batch = *call.batch;
   if (const char* wrong = wrong_batch(made, batch)) return refuse(report, wrong);
   tally found;
-  if (batch.node_count > 0) (made.walk ? made.walk : walk_batch<Law>)(&made, batch, &found);
+  if (batch.node_count > 0) found = walk_batch(made, batch);
   if (by_scalar_fallback) *by_scalar_fallback = found.by_scalar_fallback;
-  return give_report(report, made, batch, found);
+  return give_report(report, found, found.bad_count > 0 ? reason_text(made, batch, found) : nullptr);
 }
 template <class Law>
 ilaw_result ILAW_CALL evaluate(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
@@ -326,7 +348,7 @@ ilaw_result ILAW_CALL initialise(const ilaw_instance* opaque, const ilaw_batch* 
         }
     }
   }
-  return give_report(report, made, batch, found, reason);
+  return give_report(report, found, reason);
 }
 
 }  // namespace ilaw::kit::detail

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <ilaw/kit/detail/view.hpp>
-#include <ilaw/kit/symmetric.hpp>
+#include <ilaw/kit/vector.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
@@ -185,21 +185,6 @@ struct checks<V, true> {
 
 // ---- H
 
-// Diagonal with three entries, or full with six; of copies always all six.
-template <class V, class Array>
-ILAW_KIT_INLINE void load_symmetric(full<V>& h, const Array& a, std::int64_t i) {
-  if (a.count == 6) {
-    V c[6];
-    load_numbers(c, a, i);
-    h.nn = c[0], h.t11 = c[1], h.t22 = c[2], h.n1 = c[3], h.n2 = c[4], h.t12 = c[5];
-  } else {
-    axis<V> d;
-    V unused = 0.0;
-    load_vector(d, a, i, unused);
-    h.nn = d.x, h.t11 = d.y, h.t22 = d.z;
-    h.n1 = 0.0, h.n2 = 0.0, h.t12 = 0.0;
-  }
-}
 // H = diag(h_N, h_T, h_T), of one number or two.
 template <class V, class View>
 ILAW_KIT_INLINE void load_delassus(transverse<V>& h, const View& b, std::int64_t i) {
@@ -219,9 +204,26 @@ ILAW_KIT_INLINE void load_delassus(transverse_spin<V>& h, const View& b, std::in
   load_numbers(c, b.delassus, i);
   h.n = c[0], h.t = c[1], h.k = c[2], h.j_n = c[3], h.j_t = c[4];
 }
+// Diagonal or full. In fewer dimensions than three it is filled up, so that it stays positive definite and
+// does not pass for anisotropic.
 template <class V, class View>
 ILAW_KIT_INLINE void load_delassus(full<V>& h, const View& b, std::int64_t i) {
-  load_symmetric(h, b.delassus, i);
+  const auto& a = b.delassus;
+  if (a.count == 6) {
+    V c[6];
+    load_numbers(c, a, i);
+    h.nn = c[0], h.t11 = c[1], h.t22 = c[2], h.n1 = c[3], h.n2 = c[4], h.t12 = c[5];
+    return;
+  }
+  axis<V> d;
+  V unused = 0.0;
+  load_vector(d, a, i, unused);
+  h.nn = d.x, h.t11 = d.y, h.t22 = d.z;
+  h.n1 = 0.0, h.n2 = 0.0, h.t12 = 0.0;
+  if (b.dimension == 3) return;
+  if (b.dimension == 1) h.t11 = h.nn;
+  h.t22 = h.t11;
+  if (a.count == 3) h.n1 = d.z;
 }
 
 // ---- the local frame

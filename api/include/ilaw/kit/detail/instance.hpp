@@ -6,10 +6,8 @@
 #include <ilaw/create.h>
 #include <ilaw/kit/detail/dispatch.hpp>
 #include <ilaw/kit/detail/kernel.hpp>
-#include <ilaw/kit/detail/law_on_packs.hpp>
 #include <ilaw/kit/detail/walk.hpp>
 #include <ilaw/kit/law.hpp>
-#include <ilaw/kit/state.hpp>
 #include <ilaw/sized.hpp>
 
 #include <new>
@@ -74,7 +72,7 @@ constexpr ilaw_state_variable abi_state_variable(const Text& v, std::uint32_t ki
 }
 template <class Law>
 inline constexpr std::size_t state_variable_count = [] {
-  std::size_t count = has_history<Law> ? 1 : 0;
+  std::size_t count = has_window<Law> ? 1 : 0;
   if constexpr (has_state<Law>) count += std::size(Law::state_variables);
   return count;
 }();
@@ -86,7 +84,7 @@ constexpr auto abi_state_variables(int dimension, std::uint64_t history_size) {
     for (const auto& v : Law::state_variables)
       result[i++] =
           abi_state_variable(v, v.member.kind(), static_cast<std::uint64_t>(v.member.components(dimension)));
-  if constexpr (has_history<Law>)
+  if constexpr (has_window<Law>)
     result[i] = abi_state_variable(Law::history, ILAW_KIND_HISTORY, history_size);
   return result;
 }
@@ -147,7 +145,6 @@ struct instance : instance_base {
   static_assert(parameter_count<Law> <= most_parameters && kit::amount_count<Law> <= most_amounts);
 
   Law law;
-  ilaw_kit_walk walk = nullptr;  // null: this level's own
   std::uint32_t capabilities, permissions;
   table tables[parameter_count<Law> + 1];  // by parameter
   std::uint32_t table_count = 0;
@@ -354,7 +351,7 @@ class instance_builder {
     if constexpr (requires { made_.law.permissions(); })
       if (!made_.varies()) made_.permissions = made_.law.permissions();
     // A frame follows the normal wherever the node is, unless the law says when its memory rests.
-    made_.frame_follows = has_history<Law> && !(made_.permissions & ILAW_MAY_SKIP_FREE);
+    made_.frame_follows = has_window<Law> && !(made_.permissions & ILAW_MAY_SKIP_FREE);
     if (made_.carries_frame && made_.frame_follows) made_.permissions &= ~std::uint32_t{ILAW_MAY_SKIP_FRESH};
     if constexpr (requires { made_.law.asks(); }) made_.asks = with_unknowns().asks();
     if constexpr (requires { made_.law.asks(true); })
@@ -376,9 +373,12 @@ class instance_builder {
   ilaw_message& text_;
 };
 
+template <class Law>
+careful_function choose_careful(const instance<Law>& made);
+
 // law: its description.
 template <class Law>
-ilaw_result create(const ilaw_law& law, const char* name, const ilaw_setup* setup, ilaw_kit_walk walk,
+ilaw_result create(const ilaw_law& law, const char* name, const ilaw_setup* setup, const ilaw_kit_part& part,
                    ilaw_instance** result, ilaw_message& text) {
   *result = nullptr;
   if (!name || std::strcmp(name, Law::card.id) != 0)
@@ -390,9 +390,12 @@ ilaw_result create(const ilaw_law& law, const char* name, const ilaw_setup* setu
   void* memory = std::malloc(sizeof(instance<Law>));
   if (!memory) return ILAW_OUT_OF_MEMORY;
   auto* made = new (memory) instance<Law>{};
-  made->walk = walk;
   const ilaw_result code = instance_builder<Law>(*made, law, sized::read(setup), text).build();
   if (code == ILAW_OK) {
+    made->part = &part;
+    made->loop = part.loop(made, false);
+    made->float_loop = made->numbers == ILAW_NUMBERS_FLOAT ? part.loop(made, true) : nullptr;
+    made->careful = choose_careful(*made);
     *result = reinterpret_cast<ilaw_instance*>(made);
   } else {
     made->~instance<Law>();

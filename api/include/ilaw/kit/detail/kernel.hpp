@@ -2,19 +2,130 @@
 // one for floats; layouts, dimensions, outputs and parameters per node are branches that all nodes of a batch
 // share.
 //
-// A pack with a bad node writes nothing. It is copied to columns of doubles and done again by the careful
-// kernel, which finds the reason and also does the last, unfilled pack: one per law and form of H, whatever
-// the layout and the axes.
+// A pack with a bad node writes nothing. Its nodes are done again by the careful kernel, the same on packs of
+// one lane, which finds the reason and also does the last, unfilled pack. One per law and form of H serves
+// all axes and levels.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ilaw/kit/detail/frame.hpp>
-#include <ilaw/kit/detail/law_on_packs.hpp>
 #include <ilaw/kit/detail/view.hpp>
 #include <ilaw/kit/law.hpp>
 #include <ilaw/kit/node.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+// ---- a law whose members are packs
+
+// Whether kernels may work from the normal alone: no tangent named, and no vector remembered, which would
+// need tangents to be written in.
+template <class Law>
+inline constexpr bool needs_no_tangents =
+    Law::card.is_isotropic && !has_window<Law> && !has_vector_state<Law>();
+
+template <class Law>
+inline constexpr bool serves_transverse = (Law::card.delassus_forms &
+                                           (ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE)) != 0;
+template <class Law>
+inline constexpr bool serves_spins = (Law::card.delassus_forms & with_spins) != 0;
+template <class Law>
+inline constexpr bool serves_full = (Law::card.delassus_forms &
+                                     (ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL)) != 0;
+
+template <class Law, class Node>
+concept can_ask = requires(const Law& law, Node& n, typename Law::problem& p) {
+  law.ask(n, p);
+};
+
+template <class Law>
+concept can_be_asked = requires(const Law& law) {
+  law.asks();
+}
+|| requires(const Law& law) { law.asks(true); };
+template <class Law, class Node>
+concept can_choose = can_be_asked<Law> && requires(const Law& law, Node& n) {
+  law.step(n);
+};
+
+template <class Law, class V>
+struct law_on;
+template <template <class> class L, class Old, class V>
+struct law_on<L<Old>, V> {
+  using type = L<V>;
+};
+template <class Law, class V>
+using law_on_t = typename law_on<Law, V>::type;
+
+// The law with the same values in all lanes.
+template <class V, class Law, std::size_t... K>
+ILAW_KIT_INLINE law_on_t<Law, V> broadcast(const Law& law, std::index_sequence<K...>) {
+  using Wide = law_on_t<Law, V>;
+  Wide wide;
+  (Wide::parameters[K].member.copy(wide, Law::parameters[K].member, law), ...);
+  return wide;
+}
+template <class V, class Law>
+ILAW_KIT_INLINE law_on_t<Law, V> broadcast(const Law& law) {
+  if constexpr (std::is_same_v<V, double>)
+    return law;
+  else
+    return broadcast<V>(law, std::make_index_sequence<static_cast<std::size_t>(parameter_count<Law>)>{});
+}
+
+// Tables over fields, lane by lane.
+template <class Wide, class View>
+[[gnu::noinline]] void look_up(Wide& own, const View& b) {
+  using V = typename number_of_law<Wide>::type;
+  for (int k = 0; k < parameter_count<Wide>; ++k) {
+    const table& t = b.tables[k];
+    if (!t.per_node || !Wide::parameters[k].member.may_vary()) continue;
+    double found[lanes_of<V>];
+    for (int lane = 0; lane < lanes_of<V>; ++lane) {
+      double place[3] = {};
+      for (int a = 0; a < t.axis_count; ++a)
+        place[a] = t.source[a] == table::time
+                       ? b.step.time
+                       : lane_of(Wide::parameters[t.source[a]].member.varying_in(own), lane);
+      found[lane] = t.at(place);
+    }
+    __builtin_memcpy(static_cast<void*>(&Wide::parameters[k].member.varying_in(own)), found, sizeof found);
+  }
+}
+
+// The parameters of the nodes of a pack. Where one is out of range or several do not go together, the law
+// stays as it was, so that no step need stand it; returns which nodes are good.
+template <class Wide, class Law, class View>
+[[gnu::noinline]] auto take_parameters(Wide& own, const Law& law, const View& b, std::int64_t i) {
+  using V = typename number_of_law<Wide>::type;
+  mask_of<V> good = all<V>();
+  for (int k = 0; k < parameter_count<Law>; ++k)
+    if (Wide::parameters[k].member.may_vary() && b.parameters[k]) {
+      const V given = load<V>(b.parameters[k] + i);
+      good = good & Wide::parameters[k].range().has(given);
+      Wide::parameters[k].member.varying_in(own) = given;
+    }
+  if (b.tables) look_up(own, b);
+  int varying[parameter_count<Law>], count = 0;
+  for (int k = 0; k < parameter_count<Law>; ++k)
+    if (Wide::parameters[k].member.may_vary() && b.varies(k)) varying[count++] = k;
+  if constexpr (requires { law.conflict(); }) {
+    unsigned fit = 0;
+    Law here = law;
+    for (int lane = 0; lane < lanes_of<V>; ++lane) {
+      for (int j = 0; j < count; ++j)
+        Law::parameters[varying[j]].member.set(
+            here, lane_of(Wide::parameters[varying[j]].member.varying_in(own), lane));
+      fit |= here.conflict() ? 0U : 1U << lane;
+    }
+    good = good & mask_from<V>(fit);
+  }
+  if (any(!good))
+    for (int j = 0; j < count; ++j) {
+      V& value = Wide::parameters[varying[j]].member.varying_in(own);
+      value = select(good, value, V(Law::parameters[varying[j]].member.get(law)));
+    }
+  return good;
+}
 
 // ---- what few laws give beside impulse, state and energy
 
@@ -24,11 +135,23 @@ struct step_limit {
   bool is_by_node = false;
 };
 
+// Where it depends on H alone and falls with either entry, the largest entries of all nodes decide.
+template <class Law>
+concept is_limited_by_delassus = requires(const Law& law) {
+  law.stable_velocity_step(1.0, 1.0);
+};
+template <class Law>
+void add_limit_of_delassus(const Law& law, tally& all) {
+  if constexpr (is_limited_by_delassus<Law>)
+    if (all.most_normal > 0.0)
+      all.stable_velocity_step =
+          smaller(law.stable_velocity_step(all.most_normal, all.most_tangential), all.stable_velocity_step);
+}
+
 // Law: L<double>; Wide: L<V>.
 template <class Law, class Wide, class Node, class V = typename Node::number>
 struct stable_step {
-  // Where it depends on H alone and falls with either entry, the largest entries of all nodes decide.
-  static constexpr bool by_delassus = requires(const Law& law) { law.stable_velocity_step(1.0, 1.0); };
+  static constexpr bool by_delassus = is_limited_by_delassus<Law>;
   static constexpr bool by_node = requires(const Wide& law, const Node& n) { law.stable_velocity_step(n); };
 
   // Where both forms are given, the one of the node counts where the other gives NaN, and for parameters per
@@ -59,24 +182,20 @@ struct stable_step {
     }
     return made;
   }
-  static void give(const step_limit<V>& found, const Law& law, tally& all) {
-    double least = infinity, normal = 0.0, tangential = 0.0;
+  static void collect(const step_limit<V>& found, tally& all) {
     for (int k = 0; k < lanes_of<V>; ++k) {
-      least = smaller(lane_of(found.least, k), least);
-      normal = larger(lane_of(found.most_normal, k), normal);
-      tangential = larger(lane_of(found.most_tangential, k), tangential);
+      all.stable_velocity_step = smaller(lane_of(found.least, k), all.stable_velocity_step);
+      all.most_normal = larger(lane_of(found.most_normal, k), all.most_normal);
+      all.most_tangential = larger(lane_of(found.most_tangential, k), all.most_tangential);
     }
-    if constexpr (by_delassus)
-      if (normal > 0.0) least = smaller(law.stable_velocity_step(normal, tangential), least);
-    all.stable_velocity_step = smaller(least, all.stable_velocity_step);
   }
 };
 
 // Heat and wear of a step. friction is what it dissipated, so that friction/|r_T| is the mean speed of slip
 // where friction alone gives r_T (is_free: of bonds). Apart from the loop, which rarely needs it. first: the
 // place of heat among the amounts.
-template <class V, class Vector, class Number>
-ILAW_KIT_APART void store_heat(const view<Number>& b, std::int64_t i, int first, V friction, Vector impulse,
+template <class V, class Vector, class View>
+ILAW_KIT_APART void store_heat(const View& b, std::int64_t i, int first, V friction, Vector impulse,
                                Vector twice_mean, V partition, V coefficient, mask_of<V> is_free) {
   const V rubs = impulse.tangential_length(), rest = 1.0 - partition;
   const V speed = select(is_free & (rubs > 0.0), friction / rubs, 0.5 * twice_mean.tangential_length());
@@ -92,7 +211,7 @@ ILAW_KIT_APART void store_heat(const view<Number>& b, std::int64_t i, int first,
 
 // ---- a pack from end to end
 
-template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus>
+template <class Law, class V, class View, template <class> class Frame, template <class> class Delassus>
 struct kernel {
   using Wide = law_on_t<Law, V>;
   using frame_type = Frame<V>;
@@ -102,20 +221,21 @@ struct kernel {
   using node_type = node<Wide, vector_type, H>;
   using spin_type = typename node_type::spin_type;
   static constexpr bool spins = has_spins<node_type>;
-  using view_type = view<Number>;
+  using view_type = View;
   using mask = mask_of<V>;
   using limit = step_limit<V>;
   using steps = stable_step<Law, Wide, node_type>;
-  static constexpr bool careful = view_type::is_careful;
+  static constexpr bool careful = lanes_of<V> == 1;
   using checks_type = checks<V, careful>;
   static constexpr bool is_projected = std::is_same_v<frame_type, normal_frame<V>>;
-  using careful_kernel = std::conditional_t<is_projected, kernel<Law, V, copied, normal_frame, Delassus>,
-                                            kernel<Law, V, copied, either_frame, Delassus>>;
+  using careful_kernel =
+      std::conditional_t<is_projected, kernel<Law, pack_of_one, View, normal_frame, Delassus>,
+                         kernel<Law, pack_of_one, View, either_frame, Delassus>>;
   static constexpr int width = lanes_of<V>, states = state_numbers<Law>;
   static constexpr bool may_pull = (Law::card.capabilities & ILAW_CAN_ADHERE) != 0;
   static constexpr bool stays_in_reach = (Law::card.permissions & ILAW_MAY_SKIP_FRESH) != 0 &&
-                                         !has_history<Law> && !has_state<Law> && reads<Law>(reads_gap);
-  static constexpr bool can_carry = frame_type::has_axes && (has_history<Law> || has_vector_state<Law>());
+                                         !has_window<Law> && !has_state<Law> && reads<Law>(reads_gap);
+  static constexpr bool can_carry = frame_type::has_axes && (has_window<Law> || has_vector_state<Law>());
 
   // ---- load
 
@@ -480,30 +600,18 @@ struct kernel {
 
   // ---- bad nodes
 
-  // Lanes that are nodes.
-  ILAW_KIT_INLINE static mask nodes_of(const view_type& b) {
-    if constexpr (careful)
-      return mask_from<V>((1U << b.count) - 1);
-    else
-      return all<V>();
-  }
-  static void add_bad(tally& found, const checks_type& c, mask nodes, std::int64_t i) {
-    const unsigned bad = mask_bits(c.bad() & nodes);
-    if (!bad) return;
-    const int first = __builtin_ctz(bad);
-    if (found.bad_count == 0) {
-      found.first_bad_node = i + first;
-      found.reason = static_cast<int>(lane_of(c.code, first));
-    }
-    found.bad_count += __builtin_popcount(bad);
+  static void add_bad(tally& found, const checks_type& c, std::int64_t i) {
+    if (!any(c.bad())) return;
+    if (found.bad_count++ > 0) return;
+    found.first_bad_node = i;
+    found.reason = static_cast<int>(lane_of(c.code, 0));
   }
 
   // ---- laws in closed form
 
-  // One pack. False: it has a bad node and was not written. node: which the first of a copied pack is.
+  // One pack. False: it has a bad node and was not written.
   ILAW_KIT_INLINE static bool run_pack(const Wide& law, const prepared_t<Wide>& prepared, const view_type& b,
-                                       std::int64_t i, checks_type c, tally& found, limit& limits,
-                                       std::int64_t node) {
+                                       std::int64_t i, checks_type c, tally& found, limit& limits) {
     loaded p = load_pack(prepared, b, i, c);
     take_state(p.node, b, i, c);
     const status_of<V> status = law.step(p.node);
@@ -513,33 +621,18 @@ struct kernel {
       if (any(bad)) [[unlikely]]
         return false;
     store_pack(law, p, b, i, status, !bad);
-    steps::add(limits, law, p.node, b.varying, nodes_of(b) & !bad);
-    if constexpr (careful) add_bad(found, c, nodes_of(b), node);
+    steps::add(limits, law, p.node, b.varying, !bad);
+    if constexpr (careful) add_bad(found, c, i);
     return true;
   }
-  // Kernel: this one, or a solver_kernel, with what its run_pack needs besides.
-  template <class Kernel, class... Own>
-  [[gnu::noinline, gnu::cold, gnu::flatten]] static void run_copy(const Law& given, const view_type& b,
-                                                                  std::int64_t node, tally& found,
-                                                                  limit& limits, Own&... own) {
-    Wide law = broadcast<V>(given);
-    checks_type c;
-    if (b.varying) c.require(take_parameters(law, given, b, 0), reason_parameter);
-    const auto prepared = kit::prepared(law, b.step);
-    Kernel::run_pack(law, prepared, b, 0, c, found, limits, node, own...);
-  }
-  [[gnu::noinline, gnu::cold]] static void run_carefully(const Law& given, const view_type& b, std::int64_t i,
-                                                         tally& found, limit& limits) {
-    const pack_copy copy(b, i, width);
-    careful_kernel::template run_copy<careful_kernel>(given, copy.pack, i, found, limits);
-    copy.give_back(b);
-  }
-  [[gnu::noinline, gnu::flatten]] static void run(const void* opaque, const view_type& all, tally& found) {
+  // An ilaw_kit_loop.
+  [[gnu::noinline, gnu::flatten]] static void run(const void* opaque, const void* view, void* findings) {
     const Law& given = *static_cast<const Law*>(opaque);
-    const view_type b = all;
-    limit limits = steps::start(given, b.varying);
+    const view_type b = *static_cast<const view_type*>(view);
+    auto& found = *static_cast<tally*>(findings);
     std::int64_t i = 0;
     if constexpr (!ILAW_KIT_IS_SPARE) {
+      limit limits = steps::start(given, b.varying);
       Wide law = broadcast<V>(given);
       auto prepared = kit::prepared(law, b.step);
       const int is_special = b.varying + b.in_memory;
@@ -547,27 +640,58 @@ struct kernel {
         bool is_usual = true;
         if (is_special) [[unlikely]]
           is_usual = get_ready(law, prepared, given, b, i);
-        if (!is_usual || !run_pack(law, prepared, b, i, checks_type(), found, limits, i)) [[unlikely]]
-          run_carefully(given, b, i, found, limits);
+        if (!is_usual || !run_pack(law, prepared, b, i, checks_type(), found, limits)) [[unlikely]]
+          b.careful(opaque, view, i, width, &found, nullptr);
       }
+      steps::collect(limits, found);
     }
-    for (; i < b.count; i += width) run_carefully(given, b, i, found, limits);
-    if constexpr (width == 1) found.by_scalar_fallback += b.count;
-    steps::give(limits, given, found);
+    if (i < b.count) b.careful(opaque, view, i, b.count - i, &found, nullptr);
+    add_limit_of_delassus(given, found);
   }
-  // Asks for the arrays of a later pack where no cache holds them, and reads the parameters of this one,
-  // apart from the law that the loop has in registers. False: some node's are bad.
+  // A careful_function.
+  [[gnu::noinline, gnu::cold, gnu::flatten]] static void run_nodes(const void* opaque, const void* view,
+                                                                   std::int64_t first, std::int64_t count,
+                                                                   void* found, void* /*problems*/) {
+    run_each<kernel>(opaque, view, first, count, found);
+  }
+  // Kernel: this one, or a solver_kernel, with what its run_pack needs besides.
+  template <class Kernel, class... Own>
+  ILAW_KIT_INLINE static void run_each(const void* opaque, const void* view, std::int64_t first,
+                                       std::int64_t count, void* findings, Own&... own) {
+    const Law& given = *static_cast<const Law*>(opaque);
+    const auto& b = *static_cast<const view_type*>(view);
+    auto& found = *static_cast<tally*>(findings);
+    Wide law = broadcast<V>(given);
+    auto prepared = kit::prepared(law, b.step);
+    limit limits = steps::start(given, b.varying);
+    for (std::int64_t i = first; i < first + count; ++i) {
+      checks_type c;
+      if (b.varying) c.require(take_own(law, prepared, given, b, i), reason_parameter);
+      Kernel::run_pack(law, prepared, b, i, c, found, limits, own...);
+    }
+    steps::collect(limits, found);
+  }
+
+  // ---- before a pack
+
+  // Asks for the arrays of a later pack where no cache holds them, and reads the parameters of this one.
+  // False: some node's are bad.
   template <class Prepared>
   ILAW_KIT_INLINE static bool get_ready(Wide& law, Prepared& prepared, const Law& given, const view_type& b,
                                         std::int64_t i) {
-    if constexpr (std::is_same_v<Number, double>)
+    if constexpr (std::is_same_v<typename View::value, double>)
       if (b.in_memory) prefetch(b, i + prefetch_distance, width);
-    if (!b.varying) return true;
+    return !b.varying || !any(!take_own(law, prepared, given, b, i));
+  }
+  // The parameters of the nodes, apart from the law that the loop has in registers. Returns which are good.
+  template <class Prepared>
+  ILAW_KIT_INLINE static mask take_own(Wide& law, Prepared& prepared, const Law& given, const view_type& b,
+                                       std::int64_t i) {
     Wide own = law;
     const mask good = take_parameters(own, given, b, i);
     law = own;
     if constexpr (requires { law.prepare(b.step); }) refresh(prepared, kit::prepared(law, b.step));
-    return !any(!good);
+    return good;
   }
   template <class Prepared>
   ILAW_KIT_INLINE static void refresh(Prepared& to, const Prepared& from) {

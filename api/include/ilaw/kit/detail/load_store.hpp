@@ -118,16 +118,6 @@ struct array {
   Number& of(std::int64_t node, int c) const { return at[rows ? node * count + c : node + c * component]; }
 };
 
-// Columns of copy_lanes numbers: a pack that was copied.
-inline constexpr int copy_lanes = 2 * register_lanes;
-template <class Number, int Count>
-struct columns {
-  Number* at = nullptr;
-  static constexpr std::int64_t component = copy_lanes;
-  static constexpr int count = Count;
-  static constexpr int rows = 0;
-};
-
 template <class V, class Number>
 ILAW_KIT_INLINE V load(const Number* p) {
   if constexpr (lanes_of<V> == 1)

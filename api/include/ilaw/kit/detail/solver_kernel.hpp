@@ -76,8 +76,10 @@ ILAW_KIT_INLINE void get_packed(pack_of<Registers>& v, unsigned lanes, const dou
     from += __builtin_popcount(own);
   }
 }
-ILAW_KIT_INLINE void put_packed(double v, unsigned /*lanes*/, double* to) { *to = v; }
-ILAW_KIT_INLINE void get_packed(double& v, unsigned lanes, const double* from) { v = lanes ? *from : 0.0; }
+ILAW_KIT_INLINE void put_packed(pack_of_one v, unsigned /*lanes*/, double* to) { *to = v.v; }
+ILAW_KIT_INLINE void get_packed(pack_of_one& v, unsigned lanes, const double* from) {
+  v = lanes ? *from : 0.0;
+}
 
 // ---- the problems of a block
 
@@ -97,10 +99,12 @@ ILAW_KIT_INLINE char* place_in(Struct& s, int k) {
 // Work left on a pack: the answers to its problems, all of it by the careful kernel, or nothing.
 enum class pack_state : char { open, careful, stored };
 
-// Where a loop is: in which of its two passes, at which pack of the block, and at which of the problems.
+// Where a loop is: in which of its two passes, at which pack of the block, at which of the problems, and the
+// pack's first node.
 struct pass {
   bool finishing = false;
   int k = 0, first = 0;
+  std::int64_t node = 0;
 };
 
 // The law's solvers, which may take what prepare gave as well: lanes side by side, and one node.
@@ -125,8 +129,8 @@ ILAW_KIT_INLINE void solve_one(const Law& law, const step_sizes& step, const typ
 template <class Law>
 struct open_problems {
   using solver = law_on_t<Law, solver_pack>;
-  static constexpr int room = problem_block + solver_pack::size,
-                       problems = numbers_in_struct<typename solver::problem, solver_pack>,
+  static constexpr int room = problem_block + 16,  // more lanes than any level has: it is laid out alike
+      problems = numbers_in_struct<typename solver::problem, solver_pack>,
                        answers = numbers_in_struct<typename solver::answer, solver_pack>;
   static_assert(problems == numbers_in_struct<typename law_on_t<Law, double>::problem, double> &&
                     answers == numbers_in_struct<typename law_on_t<Law, double>::answer, double>,
@@ -138,6 +142,7 @@ struct open_problems {
   unsigned open[problem_block];                              // by pack: lanes with a problem
   pack_state state[problem_block];
   int count = 0;
+  pass at;
 
   // In full packs; the last is filled up with its first problem. Returns how many the scalar fallback took.
   [[gnu::noinline, gnu::flatten]] int solve(const Law& given, const step_sizes& step) {
@@ -194,17 +199,11 @@ struct open_problems {
   }
 };
 
-// Where it is asked rarely: once per form of H, whatever the host's numbers and frame.
-template <class Wide, class Node>
-ILAW_KIT_APART auto ask_apart(const Wide& law, Node& node, typename Wide::problem& open) {
-  return law.ask(node, open);
-}
-
 // ---- the loop
 
-template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus>
-struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
-  using base = kernel<Law, V, Number, Frame, Delassus>;
+template <class Law, class V, class View, template <class> class Frame, template <class> class Delassus>
+struct solver_kernel : kernel<Law, V, View, Frame, Delassus> {
+  using base = kernel<Law, V, View, Frame, Delassus>;
   using base::careful;
   using base::width;
   using typename base::checks_type;
@@ -216,8 +215,8 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
   using typename base::Wide;
   using results = typename node_type::results;
   using careful_kernel =
-      std::conditional_t<base::is_projected, solver_kernel<Law, V, copied, normal_frame, Delassus>,
-                         solver_kernel<Law, V, copied, either_frame, Delassus>>;
+      std::conditional_t<base::is_projected, solver_kernel<Law, pack_of_one, View, normal_frame, Delassus>,
+                         solver_kernel<Law, pack_of_one, View, either_frame, Delassus>>;
   using problem = typename Wide::problem;
   using answer = typename Wide::answer;
   using problems_type = open_problems<Law>;
@@ -238,33 +237,30 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
   // One pack, asked for its problems or, where finishing, with the answers to them. False: it has a bad node.
   ILAW_KIT_INLINE static bool run_pack(const Wide& law, const prepared_t<Wide>& prepared, const view_type& b,
                                        std::int64_t i, checks_type c, tally& found, limit& limits,
-                                       std::int64_t node, problems_type& all, const pass& at) {
+                                       problems_type& all, const pass& at) {
     loaded p = base::load_pack(prepared, b, i, c, at.finishing && !careful);
     base::take_state(p.node, b, i, c);
-    const mask bad_input = c.bad(), nodes = base::nodes_of(b);
+    const mask bad_input = c.bad();
     if constexpr (!careful)
       if (any(bad_input)) [[unlikely]]
         return false;
     const results came = p.node;
+    const int lane = careful ? static_cast<int>(i - at.node) : 0;
+    unsigned open = all.open[at.k] >> lane & all_of_pack;
     problem own;
     kit::asked<V> asked{none<V>(), status::free};
-    if (!at.finishing || all.open[at.k] != all_of_pack) {
-      if constexpr (careful)
-        asked = ask_apart(law, p.node, own);
-      else
-        asked = law.ask(p.node, own);
-    }
+    if (!at.finishing || open != all_of_pack) asked = law.ask(p.node, own);
     status_of<V> status = asked.status;
     if (at.finishing) {
-      const unsigned open = all.open[at.k];
+      const int first = at.first + __builtin_popcount(all.open[at.k] & ((1U << lane) - 1));
       answer a;
 #pragma GCC unroll 64
       for (int k = 0; k < problems_type::answers; ++k)
-        get_packed(reinterpret_cast<V*>(&a)[k], open, all.answer[k] + at.first);
+        get_packed(reinterpret_cast<V*>(&a)[k], open, all.answer[k] + first);
       status = finish(law, p.node, came, a, mask_from<V>(open), status);
     } else {
-      const unsigned open = mask_bits(asked.open & nodes & !bad_input);
-      all.open[at.k] = open;
+      open = mask_bits(asked.open & !bad_input);
+      all.open[at.k] |= open << lane;
       all.state[at.k] = careful ? pack_state::careful : pack_state::open;
       if (careful || open) {
         keep(law, own, open, all);
@@ -281,8 +277,8 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
       all.state[at.k] = pack_state::stored;
     }
     base::store_pack(law, p, b, i, status, !bad);
-    base::steps::add(limits, law, p.node, b.varying, nodes & !bad);
-    if constexpr (careful) base::add_bad(found, c, nodes, node);
+    base::steps::add(limits, law, p.node, b.varying, !bad);
+    if constexpr (careful) base::add_bad(found, c, i);
     return true;
   }
   // Finishes the lanes with an answer from the results that they came with; the others stay as ask left them.
@@ -311,17 +307,19 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     a.refused = select(first, a.refused, b.refused);
   }
 
-  [[gnu::noinline, gnu::cold]] static void run_carefully(const Law& given, const view_type& b, std::int64_t i,
-                                                         problems_type& all, const pass& at, tally& found,
-                                                         limit& limits) {
-    const pack_copy copy(b, i, width);
-    careful_kernel::template run_copy<careful_kernel>(given, copy.pack, i, found, limits, all, at);
-    if (at.finishing) copy.give_back(b);
+  // A careful_function.
+  [[gnu::noinline, gnu::cold, gnu::flatten]] static void run_nodes(const void* opaque, const void* view,
+                                                                   std::int64_t first, std::int64_t count,
+                                                                   void* found, void* problems) {
+    auto& all = *static_cast<problems_type*>(problems);
+    base::template run_each<solver_kernel>(opaque, view, first, count, found, all, all.at);
   }
 
-  [[gnu::noinline, gnu::flatten]] static void run(const void* opaque, const view_type& whole, tally& found) {
+  // An ilaw_kit_loop.
+  [[gnu::noinline, gnu::flatten]] static void run(const void* opaque, const void* view, void* findings) {
     const Law& given = *static_cast<const Law*>(opaque);
-    const view_type b = whole;
+    const view_type b = *static_cast<const view_type*>(view);
+    auto& found = *static_cast<tally*>(findings);
     [[maybe_unused]] Wide law = broadcast<V>(given);
     [[maybe_unused]] auto prepared = kit::prepared(law, b.step);
     limit limits = base::steps::start(given, b.varying);
@@ -334,22 +332,27 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
       for (pass at{};; at = {.finishing = true}) {
         for (std::int64_t i = start; i < end; i += width, ++at.k) {
           if (at.finishing && all.state[at.k] == pack_state::stored) continue;
+          if (!at.finishing) all.open[at.k] = 0;
           bool is_done = false;
           if constexpr (!ILAW_KIT_IS_SPARE) {
             bool is_usual = i + width <= end && !(at.finishing && all.state[at.k] == pack_state::careful);
             if (is_usual && b.varying + b.in_memory) [[unlikely]]
               is_usual = base::get_ready(law, prepared, given, b, i);
-            is_done = is_usual && run_pack(law, prepared, b, i, checks_type(), found, limits, i, all, at);
+            is_done = is_usual && run_pack(law, prepared, b, i, checks_type(), found, limits, all, at);
           }
-          if (!is_done) [[unlikely]]
-            run_carefully(given, b, i, all, at, found, limits);
+          if (!is_done) [[unlikely]] {
+            all.at = at;
+            all.at.node = i;
+            b.careful(opaque, view, i, end - i < width ? end - i : width, &found, &all);
+          }
           if (at.finishing) at.first += __builtin_popcount(all.open[at.k]);
         }
         if (at.finishing) break;
         if (all.count > 0) found.by_scalar_fallback += all.solve(given, b.step);
       }
     }
-    base::steps::give(limits, given, found);
+    base::steps::collect(limits, found);
+    add_limit_of_delassus(given, found);
   }
 };
 

@@ -13,6 +13,11 @@ inline constexpr int most_parameters = 32, most_amounts = 8, most_states = 24, f
 // Where the tangents of nodes in the host's axes come from.
 enum class tangents { of_plane, given, carried, chosen };
 
+// Some nodes of a view, one by one, whatever they are; the pointers lead to types that are the same at every
+// level. problems: of a law with a solver, else null.
+using careful_function = void (*)(const void* law, const void* view, std::int64_t first, std::int64_t count,
+                                  void* found, void* problems);
+
 // Values that all nodes of a view share.
 struct view_options {
   std::int64_t count;
@@ -30,6 +35,7 @@ struct view_options {
   bool has_balance;     // energy or an amount is
   bool has_amounts;     // an amount is
   const table* tables;  // by the law's parameters, over fields that come per node; null: none
+  careful_function careful;
 };
 
 // ---- the arrays of a batch: one list for checks, walks, copies and devices, whose structs name them alike
@@ -76,152 +82,27 @@ ILAW_KIT_INLINE void for_outputs(F f, Structs&... s) {
 }
 #undef ILAW_KIT_ARRAY
 
-// In the place of a host's number type: a pack of nodes that was copied to columns of doubles.
-struct copied {};
-
-// The arrays of a view. Careful: the loop finds the reason of each bad node, and writes such nodes, too.
-template <class Number>
-struct arrays_of {
-  static constexpr bool are_careful = false;
-  using value = Number;
-  template <class T, int Count>
-  using array_type = array<T>;
-  template <class T>
-  using state_type = array<T>;
-};
-template <>
-struct arrays_of<copied> {
-  static constexpr bool are_careful = true;
-  using value = double;
-  template <class T, int Count>
-  using array_type = columns<T, Count>;
-  template <class T>
-  using state_type = columns<T, most_states>;
-};
-
-template <class Number>
+// State: of arrays with the numbers of a state in space, or of a device's.
+template <class Number, template <class> class State = array>
 struct view : view_options {
-  using arrays = arrays_of<Number>;
-  static constexpr bool is_careful = arrays::are_careful;
-  using value = typename arrays::value;
-  template <class T, int Count>
-  using array_of = typename arrays::template array_type<T, Count>;
+  using value = Number;
 
-  array_of<const value, 3> v_free, v_smooth, v_previous, normal, tangent, spin_free, spin_previous;
-  array_of<const value, 6> delassus;
-  array_of<const value, 1> gap, gap_offset, area;
+  array<const value> v_free, v_smooth, v_previous, normal, tangent, spin_free, spin_previous;
+  array<const value> delassus, gap, gap_offset, area;
   const double* parameters[most_parameters];  // by the law's; null: the same at all nodes
-  array_of<value, 3> impulse, velocity, moment, spin;
-  array_of<value, ILAW_ENERGY_COUNT> energy;
+  array<value> impulse, velocity, moment, spin, energy;
   value* amounts[most_amounts];
   std::uint8_t* status;
-  typename arrays::template state_type<const double> state_in;
-  typename arrays::template state_type<double> state_out;
-  array_of<const double, 6> frame_in;
-  array_of<double, 6> frame_out;
+  State<const double> state_in;
+  State<double> state_out;
+  array<const double> frame_in;
+  array<double> frame_out;
   // Windows: what they sum up to, and codes of refusals; the impulse, and 1 or 0 for windows that take it in,
   // and for those that are emptied before. Null: the law has none, or remembers nothing.
   const double *earlier[3], *earlier_refused;
   double *given[3], *adds, *clears;
 
   bool varies(int parameter) const { return parameters[parameter] || (tables && tables[parameter].per_node); }
-};
-
-// A pack of nodes as columns of doubles: for the last, unfilled pack and for packs with a bad node. Lanes
-// without a node are as the last one.
-class pack_copy {
- public:
-  view<copied> pack;
-
-  template <class Number>
-  [[gnu::noinline, gnu::cold]] pack_copy(const view<Number>& b, std::int64_t i, int width)
-      : pack{}, first_(i), width_(width) {
-    static_cast<view_options&>(pack) = b;
-    pack.count = b.count - i < width ? b.count - i : width;
-    pack.is_scalar = false;
-    for_inputs([&](const array_card&, auto& from, auto& to, auto& copy) { take(from, to, copy); }, b, pack,
-               copies_);
-    take(b.delassus, pack.delassus, delassus_);
-    if (b.is_scalar)
-      for (int k = 0; k < width; ++k) delassus_[1][k] = delassus_[0][k];
-    for (int p = 0; p < most_parameters; ++p) pack.parameters[p] = take(b.parameters[p], parameters_[p]);
-    const auto aim = [](const array_card&, auto& from, auto& to, auto& copy) {
-      if (from.at) to.at = copy[0];
-    };
-    for_outputs(aim, b, pack, copies_);
-    for (int a = 0; a < most_amounts; ++a)
-      if (b.amounts[a]) pack.amounts[a] = amounts_[a];
-    if (b.status) pack.status = status_;
-    take(b.state_in, pack.state_in, state_in_);
-    pack.state_out.at = state_out_[0];
-    take(b.frame_in, pack.frame_in, frame_in_);
-    pack.frame_out.at = frame_out_[0];
-    for (int c = 0; c < 3; ++c) {
-      pack.earlier[c] = take(b.earlier[c], earlier_[c]);
-      pack.given[c] = given_[c];
-    }
-    pack.earlier_refused = take(b.earlier_refused, earlier_[3]);
-    pack.adds = given_[3];
-    pack.clears = given_[4];
-  }
-  pack_copy(const pack_copy&) = delete;
-
-  // Outputs, to the view that it was copied from.
-  template <class Number>
-  [[gnu::noinline, gnu::cold]] void give_back(const view<Number>& b) const {
-    for_outputs([&](const array_card&, auto& to, auto& copy) { give(to, copy); }, b, copies_);
-    for (int a = 0; a < most_amounts; ++a) give(b.amounts[a], amounts_[a]);
-    give(b.status, status_);
-    give(b.state_out, state_out_);
-    give(b.frame_out, frame_out_);
-    for (int c = 0; c < 3; ++c) give(b.given[c], given_[c]);
-    give(b.adds, given_[3]);
-    give(b.clears, given_[4]);
-  }
-
- private:
-  std::int64_t node(int lane) const { return first_ + (lane < pack.count ? lane : pack.count - 1); }
-  template <class Number>
-  const double* take(const Number* from, double* to) const {
-    if (!from) return nullptr;
-    for (int k = 0; k < width_; ++k) to[k] = static_cast<double>(from[node(k)]);
-    return to;
-  }
-  template <class Number, int Count>
-  void take(const array<Number>& from, columns<const double, Count>& to,
-            double (&copy)[Count][copy_lanes]) const {
-    if (!from.at) return;
-    to.at = copy[0];
-    for (int c = 0; c < Count; ++c)
-      for (int k = 0; k < width_; ++k)
-        copy[c][k] = c < from.count ? static_cast<double>(from.of(node(k), c)) : 0.0;
-  }
-  template <class Number, class From>
-  void give(Number* to, const From* from) const {
-    if (!to) return;
-    for (int k = 0; k < pack.count; ++k) to[first_ + k] = static_cast<Number>(from[k]);
-  }
-  template <class Number, int Count>
-  void give(const array<Number>& to, const double (&copy)[Count][copy_lanes]) const {
-    if (!to.at) return;
-    for (int c = 0; c < to.count; ++c)
-      for (int k = 0; k < pack.count; ++k) to.of(first_ + k, c) = static_cast<Number>(copy[c][k]);
-  }
-
-  const std::int64_t first_;
-  const int width_;
-  using column = double[copy_lanes];
-  struct alignas(64) copies {
-    column v_free[3], v_smooth[3], v_previous[3], normal[3], tangent[3], gap[1], gap_offset[1], area[1];
-    column spin_free[3], spin_previous[3];
-    column impulse[3], velocity[3], energy[ILAW_ENERGY_COUNT], moment[3], spin[3];
-  };
-  copies copies_;
-  alignas(64) column delassus_[6],
-      parameters_[most_parameters], earlier_[4], given_[5], state_in_[most_states];
-  alignas(64) column state_out_[most_states], frame_in_[6], frame_out_[6];
-  alignas(64) column amounts_[most_amounts];
-  std::uint8_t status_[copy_lanes];
 };
 
 // Reasons of bad nodes, in the order in which they are looked for; from first_of_state on, one per state
@@ -257,6 +138,7 @@ struct tally {
   std::int64_t bad_count = 0, first_bad_node = -1, by_scalar_fallback = 0;
   int reason = no_reason;
   double stable_velocity_step = infinity;
+  double most_normal = 0.0, most_tangential = 0.0;  // entries of H, of laws whose step follows from these
 };
 
 // For doubles only, as floats lose by it: how many nodes ahead a loop prefetches arrays that no cache holds,

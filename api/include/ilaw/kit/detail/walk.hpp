@@ -1,6 +1,7 @@
 // walk.hpp - a batch as views: all of it at once where its arrays are rows or columns, else blocks of nodes,
 // of which the other arrays are copied to columns and back, and the windows read before the loop and written
-// after it. Once per level and number types, not per law.
+// after it. Once per number types, not per law, and at the baseline, as it moves numbers and computes none:
+// windows and conversions of floats are of the instance's level.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -130,9 +131,11 @@ struct window_place {
     }
   }
 };
-[[gnu::noinline, gnu::flatten]] inline void read_windows(const window& w, const window_place& place,
-                                                         window_block& block) {
-  place.for_packs([&](std::int64_t i, const auto& own) {
+// Both are ilaw_kit_windows.
+[[gnu::noinline, gnu::flatten]] inline void read_windows(const void* window, const void* place, void* all) {
+  const auto& w = *static_cast<const kit::window*>(window);
+  auto& block = *static_cast<window_block*>(all);
+  static_cast<const window_place*>(place)->for_packs([&](std::int64_t i, const auto& own) {
     vector<pack> sum;
     store(w.read(own, sum), block.refused + i);
     store(sum.n, block.earlier[0] + i);
@@ -140,8 +143,10 @@ struct window_place {
     store(sum.t2, block.earlier[2] + i);
   });
 }
-[[gnu::noinline, gnu::flatten]] inline void write_windows(const window& w, const window_place& place,
-                                                          window_block& block) {
+[[gnu::noinline, gnu::flatten]] inline void write_windows(const void* window, const void* where, void* all) {
+  const auto& w = *static_cast<const kit::window*>(window);
+  const auto& place = *static_cast<const window_place*>(where);
+  auto& block = *static_cast<window_block*>(all);
   for (std::int64_t i = place.count; i % lanes_of<pack> != 0; ++i) block.adds[i] = block.clears[i] = 0.0;
   place.for_packs([&](std::int64_t i, const auto& own) {
     const vector<pack> impulse{load<pack>(block.given[0] + i), load<pack>(block.given[1] + i),
@@ -175,10 +180,6 @@ class walk_base {
   bool stays_or_absent(const Array& a, int components) const {
     return is_absent(made_, a) || stays(a, components);
   }
-  bool delassus_stays() const {
-    if (!made_.is_transverse() && d_ < 3) return false;
-    return stays(b_.delassus, made_.delassus_numbers());
-  }
   template <class Array>
   bool state_stays(const Array& a) const {
     if (made_.states == 0 && !made_.carries_frame) return true;
@@ -189,8 +190,9 @@ class walk_base {
            a.component_stride == 1;
   }
   bool all_stay() const {
-    bool stay = !b_.index && !b_.index64 && (!b_.status || b_.status_stride == 1) && delassus_stays() &&
-                state_stays(b_.state_in) && state_stays(b_.state_out);
+    bool stay = !b_.index && !b_.index64 && (!b_.status || b_.status_stride == 1) &&
+                stays(b_.delassus, made_.delassus_numbers()) && state_stays(b_.state_in) &&
+                state_stays(b_.state_out);
     const auto check = [&](const array_card& card, const auto& a) {
       stay = stay && (!card.is_in(read_) || stays_or_absent(a, card.count(d_)));
     };
@@ -287,13 +289,9 @@ class walk_base {
   double* const state_scratch_;
 };
 
-// The loop of a law over a view.
-template <class Number>
-using run_function = void (*)(const void* law, const view<Number>&, tally&);
-
 // Host: what the arrays of the batch hold. Number: what the loop reads; another type is converted by blocks,
 // rows to rows and columns to columns.
-template <class Host, class Number = Host, bool HasWindow = false>
+template <class Host, class Number>
 class batch_walk : walk_base {
  public:
   // parameter_scratch: block_nodes for each parameter of the law.
@@ -301,7 +299,7 @@ class batch_walk : walk_base {
              double* parameter_scratch)
       : walk_base(made, batch, state_scratch), parameter_scratch_(parameter_scratch) {}
 
-  [[gnu::noinline]] tally run(run_function<Number> loop, const void* law) {
+  [[gnu::noinline]] tally run(ilaw_kit_loop loop, const void* law) {
     tally all;
     if (!converts && made_.window.duration == 0.0 && all_stay()) {
       run_part(node_range(b_, 0, b_.node_count), loop, law, all);
@@ -327,8 +325,8 @@ class batch_walk : walk_base {
   }
   // An array of the host's, to its copy or back. One of other numbers that would stay keeps its order.
   template <class T, class Array, class Copy>
-  [[gnu::noinline]] static void copy_array(T* values, const Array& a, int components, const node_range& n,
-                                           Copy* copy) {
+  [[gnu::noinline]] void copy_array(T* values, const Array& a, int components, const node_range& n,
+                                    Copy* copy) const {
     if constexpr (converts)
       if (!n.listed && stays(a, components)) {
         const bool rows = a.node_stride != 1;
@@ -338,9 +336,9 @@ class batch_walk : walk_base {
           for (std::int64_t k = 0; k < count; k += 64 / static_cast<int>(sizeof(T)))
             __builtin_prefetch(host + count + k);
           if constexpr (std::is_const_v<T>)
-            convert(host, copy, count);
+            made_.part->to_doubles(host, copy, count);
           else
-            convert(copy, host, count);
+            made_.part->to_floats(copy, host, count);
         }
         return;
       }
@@ -378,23 +376,7 @@ class batch_walk : walk_base {
     copy_nodes<1>(numbers_in<Host>(a), a.node_stride, 0, n, copy);
     return copy;
   }
-  // Full in the order of three dimensions, padded so that it stays positive definite.
-  array<const Number> gather_delassus(const node_range& n) {
-    const int numbers = made_.delassus_numbers();
-    if (made_.is_transverse() || d_ == 3) return gather(b_.delassus, numbers, n, s_.delassus);
-    const auto take = [&](int from, int to) {
-      copy_nodes<1>(numbers_in<Host>(b_.delassus) + from * b_.delassus.component_stride,
-                    b_.delassus.node_stride, 0, n, s_.delassus + to * block_nodes);
-    };
-    take(0, 0);
-    take(d_ > 1 ? 1 : 0, 1);
-    take(d_ > 1 ? 1 : 0, 2);  // or it would pass for anisotropic
-    for (int k = 3 * block_nodes; k < 6 * block_nodes; ++k) s_.delassus[k] = 0;
-    if (numbers == 3) take(2, 3);
-    return {s_.delassus, block_nodes, 6, 0};
-  }
-
-  void run_with_windows(view<Number>& v, const node_range& n, run_function<Number> loop, const void* law,
+  void run_with_windows(view<Number>& v, const node_range& n, ilaw_kit_loop loop, const void* law,
                         tally& found) {
     const window w(made_.window, {b_.time + 0.5 * b_.position_step, b_.velocity_step});
     const ilaw_output& to = b_.state_out;
@@ -409,9 +391,9 @@ class batch_walk : walk_base {
     v.earlier_refused = windows.refused;
     v.adds = windows.adds;
     v.clears = windows.clears;
-    read_windows(w, place, windows);
-    loop(law, v, found);
-    write_windows(w, place, windows);
+    made_.part->read(&w, &place, &windows);
+    loop(law, &v, &found);
+    made_.part->write(&w, &place, &windows);
   }
 
   // ---- a part of the batch
@@ -421,7 +403,7 @@ class batch_walk : walk_base {
       if (card.is_in(read_)) to = gather(a, card.count(d_), n, copy);
     };
     for_inputs(open, b_, v, s_);
-    v.delassus = gather_delassus(n);
+    v.delassus = gather(b_.delassus, made_.delassus_numbers(), n, s_.delassus);
     for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
       v.parameters[made_.per_node_parameters[k]] =
           gather_parameter(b_.per_node_parameters[k], n, parameter_scratch_ + k * block_nodes);
@@ -440,7 +422,7 @@ class batch_walk : walk_base {
     v.has_balance = v.energy.at || v.has_amounts;
   }
   bool status_stays(const node_range& n) const { return !n.listed && b_.status_stride == 1; }
-  void run_part(const node_range& n, run_function<Number> loop, const void* law, tally& all) {
+  void run_part(const node_range& n, ilaw_kit_loop loop, const void* law, tally& all) {
     view<Number> v{};
     static_cast<view_options&>(v) = options_of(made_, b_, n.count);
     v.in_memory = std::is_same_v<Host, double> && n.count >= prefetch_from;
@@ -452,14 +434,10 @@ class batch_walk : walk_base {
     v.frame_in = state.frame_in;
     v.frame_out = state.frame_out;
     tally found;
-    if constexpr (HasWindow) {
-      if (made_.window.duration > 0.0)
-        run_with_windows(v, n, loop, law, found);
-      else
-        loop(law, v, found);
-    } else {
-      loop(law, v, found);
-    }
+    if (made_.window.duration > 0.0)
+      run_with_windows(v, n, loop, law, found);
+    else
+      loop(law, &v, &found);
     add(all, found, n);
     const auto close = [&](const array_card&, const ilaw_output& a, const auto& from, const Number* copy) {
       scatter(a, from, n, copy);

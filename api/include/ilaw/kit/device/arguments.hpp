@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/law_on_packs.hpp>
 #include <ilaw/kit/detail/solver_kernel.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
@@ -43,9 +42,6 @@ struct device_array {
   void* at;
   std::int64_t node_stride, component_stride;
 };
-
-// In the place of 3 numbers of a full H in the plane: a diagonal H in space has as many.
-inline constexpr int full_in_plane = 4;
 
 struct device_options : view_options {
   std::int32_t law_place;  // in its library
@@ -92,11 +88,11 @@ struct device_loop {
   static constexpr bool is_served =
       is_full ? serves_full<Law> && Variant.frame != device_frame::normal
               : serves_transverse<Law> && (Variant.frame != device_frame::normal || needs_no_tangents<Law>);
-  template <class Number, class V = double>
-  using kernel_on = kernel<Law, V, Number, frame, delassus>;
-  template <class Number, class V = double>
-  using solver_kernel_on = solver_kernel<Law, V, Number, frame, delassus>;
-  using node_type = typename kernel_on<double>::node_type;
+  template <class View, class V = pack_of_one>
+  using kernel_on = kernel<Law, V, View, frame, delassus>;
+  template <class View>
+  using solver_kernel_on = solver_kernel<Law, pack_of_one, View, frame, delassus>;
+  using node_type = typename kernel_on<view<double>, double>::node_type;
   static constexpr bool has_solver = can_ask<Law, node_type> ? solves || can_choose<Law, node_type> : !solves;
   static constexpr bool exists = is_served && serves_devices<Law> && has_solver;
 };

@@ -55,11 +55,6 @@ inline constexpr auto has_device_kernel =
     device_kernels_of<Law>(std::make_index_sequence<std::size(device_names)>{});
 
 template <class Law>
-inline constexpr device_variant any_variant{
-    device_numbers::of_double, device_frame::local,
-    serves_transverse<Law> ? device_form::transverse : device_form::full, device_part::plain};
-
-template <class Law>
 device_frame device_frame_of(const instance<Law>& made) {
   if (made.frame == ILAW_FRAME_LOCAL) return device_frame::local;
   const bool is_normal =
@@ -127,12 +122,11 @@ class device_writer {
   }
 
   void write_options() {
-    const int d = static_cast<int>(made_.dimension), numbers = made_.delassus_numbers();
     static_cast<view_options&>(to_) = options_of(made_, b_, b_.node_count);
     to_.index = b_.index;
     to_.index64 = b_.index64;
     to_.index_base = b_.index_base;
-    to_.delassus_numbers = !made_.is_transverse() && d == 2 && numbers == 3 ? full_in_plane : numbers;
+    to_.delassus_numbers = made_.delassus_numbers();
   }
   void write_inputs() {
     const std::uint32_t read = inputs_read(made_, b_);
@@ -189,17 +183,13 @@ struct device_functions {
                                       ilaw_report* report) {
     if (!opaque || !totals || !sized::is_complete(report)) return ILAW_INVALID_ARGUMENT;
     const float_environment own;
-    using loop = typename device_loop<Law, any_variant<Law>>::template kernel_on<double>;
-    tally found;
-    loop::steps::give({totals->limits[0], totals->limits[1], totals->limits[2]},
-                      of<Law>(opaque).at(totals->time), found);
-    sized::write(report, {.struct_size = 0,
-                          .reserved = 0,
-                          .bad_count = totals->bad_count,
-                          .first_bad_node = totals->first_bad_node,
-                          .reason = reason_text<Law>(static_cast<int>(totals->reason)),
-                          .stable_velocity_step = found.stable_velocity_step});
-    return totals->bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
+    tally found{.bad_count = totals->bad_count,
+                .first_bad_node = totals->first_bad_node,
+                .stable_velocity_step = totals->limits[0],
+                .most_normal = totals->limits[1],
+                .most_tangential = totals->limits[2]};
+    add_limit_of_delassus(of<Law>(opaque).at(totals->time), found);
+    return give_report(report, found, reason_text<Law>(static_cast<int>(totals->reason)));
   }
 
   static constexpr ilaw_device_law law{.struct_size = sizeof(ilaw_device_law),

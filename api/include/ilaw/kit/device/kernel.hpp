@@ -1,5 +1,5 @@
-// kernel.hpp - a law's kernels for a device: one thread a node, on the careful loop of the CPU with V
-// = double, straight from the host's arrays. No allocation, no synchronization.
+// kernel.hpp - a law's kernels for a device: one thread a node, by the careful loop of the CPU, straight from
+// the host's arrays. No allocation, no synchronization.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,108 +8,8 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// ---- the number type
-
-// V of a law on a device is a pack of one lane. Not a double, with which laws mean the scalar fallback and
-// may compute in another way.
-
-struct device_mask {
-  bool m;
-
-  ILAW_KIT_INLINE friend device_mask operator&(device_mask a, device_mask b) { return {a.m && b.m}; }
-  ILAW_KIT_INLINE friend device_mask operator|(device_mask a, device_mask b) { return {a.m || b.m}; }
-  ILAW_KIT_INLINE friend device_mask operator!(device_mask a) { return {!a.m}; }
-  ILAW_KIT_INLINE friend device_mask operator&(device_mask a, bool b) { return {a.m && b}; }
-  ILAW_KIT_INLINE friend device_mask operator&(bool a, device_mask b) { return {a && b.m}; }
-  ILAW_KIT_INLINE friend device_mask operator|(device_mask a, bool b) { return {a.m || b}; }
-  ILAW_KIT_INLINE friend device_mask operator|(bool a, device_mask b) { return {a || b.m}; }
-  ILAW_KIT_INLINE friend bool any(device_mask a) { return a.m; }
-  ILAW_KIT_INLINE friend unsigned mask_bits(device_mask a) { return a.m ? 1U : 0U; }
-};
-
-struct device_number {
-  static constexpr int size = 1;
-  using mask = device_mask;
-  double v;
-
-  device_number() = default;
-  ILAW_KIT_INLINE device_number(double x) : v(x) {}
-  template <class T>
-  ILAW_KIT_INLINE explicit operator T() const requires std::is_arithmetic_v<T> {
-    return static_cast<T>(v);
-  }
-
-#define ILAW_KIT_OPERATION(op) \
-  ILAW_KIT_INLINE friend device_number operator op(device_number a, device_number b) { return a.v op b.v; }
-  ILAW_KIT_OPERATION(+)
-  ILAW_KIT_OPERATION(-)
-  ILAW_KIT_OPERATION(*)
-  ILAW_KIT_OPERATION(/)
-#undef ILAW_KIT_OPERATION
-#define ILAW_KIT_COMPARISON(op) \
-  ILAW_KIT_INLINE friend mask operator op(device_number a, device_number b) { return {a.v op b.v}; }
-  ILAW_KIT_COMPARISON(<)
-  ILAW_KIT_COMPARISON(<=)
-  ILAW_KIT_COMPARISON(>)
-  ILAW_KIT_COMPARISON(>=)
-  ILAW_KIT_COMPARISON(==)
-  ILAW_KIT_COMPARISON(!=)
-#undef ILAW_KIT_COMPARISON
-  ILAW_KIT_INLINE friend device_number operator-(device_number a) { return -a.v; }
-  ILAW_KIT_INLINE friend device_number& operator+=(device_number& a, device_number b) { return a = a + b; }
-  ILAW_KIT_INLINE friend device_number& operator-=(device_number& a, device_number b) { return a = a - b; }
-  ILAW_KIT_INLINE friend device_number& operator*=(device_number& a, device_number b) { return a = a * b; }
-
-  ILAW_KIT_INLINE friend device_number select(mask m, device_number a, device_number b) {
-    return m.m ? a.v : b.v;
-  }
-  ILAW_KIT_INLINE friend device_number zero_unless(mask m, device_number a) { return m.m ? a.v : 0.0; }
-  ILAW_KIT_INLINE friend device_number larger(device_number a, device_number b) {
-    return kit::larger(a.v, b.v);
-  }
-  ILAW_KIT_INLINE friend device_number smaller(device_number a, device_number b) {
-    return kit::smaller(a.v, b.v);
-  }
-  ILAW_KIT_INLINE friend device_number positive_part(device_number x) { return kit::positive_part(x.v); }
-  ILAW_KIT_INLINE friend device_number square_root(device_number x) { return kit::square_root(x.v); }
-  ILAW_KIT_INLINE friend device_number absolute(device_number x) { return kit::absolute(x.v); }
-  ILAW_KIT_INLINE friend device_number exp(device_number x) { return kit::exp(x.v); }
-  ILAW_KIT_INLINE friend device_number log(device_number x) { return kit::log(x.v); }
-
-  ILAW_KIT_INLINE friend mask have_other_bits(device_number a, device_number b) {
-    return {detail::have_other_bits(a.v, b.v)};
-  }
-  ILAW_KIT_INLINE friend double lane_of(device_number x, int /*lane*/) { return x.v; }
-  ILAW_KIT_INLINE double operator[](int /*lane*/) const { return v; }
-};
-
-template <>
-struct bits_of<device_number> {
-  using type = std::uint64_t;
-  ILAW_KIT_INLINE static type in(device_number x) { return std::bit_cast<type>(x.v); }
-  ILAW_KIT_INLINE static type of(std::uint64_t all) { return all; }
-  ILAW_KIT_INLINE static device_number number(type bits) { return std::bit_cast<double>(bits); }
-};
-template <>
-ILAW_KIT_INLINE device_mask mask_from<device_number>(unsigned bits) {
-  return {bits != 0};
-}
-ILAW_KIT_INLINE status_of<device_number> select(device_mask m, status_value a, status_value b) {
-  return m.m ? a : b;
-}
-
 // ---- the arrays of one node, as a view: node 0 of it
 
-template <class Law, class Number>
-struct at_node {};
-
-template <class T>
-struct node_array {
-  T* at = nullptr;
-  std::int64_t component = 0;
-  int count = 0;
-  static constexpr int rows = 0;
-};
 template <class Law, class T>
 struct node_state {
   T* at = nullptr;
@@ -124,18 +24,16 @@ struct node_state {
   }
 };
 
-template <class Law, class Number>
-struct arrays_of<at_node<Law, Number>> {
-  static constexpr bool are_careful = true;
-  using value = Number;
-  template <class T, int Count>
-  using array_type = node_array<T>;
+template <class Law>
+struct node_states {
   template <class T>
-  using state_type = node_state<Law, T>;
+  using of = node_state<Law, T>;
 };
+template <class Law, class Number>
+using node_view = view<Number, node_states<Law>::template of>;
 
 template <int N, class Law>
-ILAW_KIT_INLINE void load_numbers(device_number (&to)[N], const node_state<Law, const double>& a,
+ILAW_KIT_INLINE void load_numbers(pack_of_one (&to)[N], const node_state<Law, const double>& a,
                                   std::int64_t) {
 #pragma unroll
   for (int k = 0; k < N; ++k) {
@@ -144,23 +42,11 @@ ILAW_KIT_INLINE void load_numbers(device_number (&to)[N], const node_state<Law, 
   }
 }
 template <int N, class Law>
-ILAW_KIT_INLINE void store_numbers(const device_number (&a)[N], const node_state<Law, double>& to,
+ILAW_KIT_INLINE void store_numbers(const pack_of_one (&a)[N], const node_state<Law, double>& to,
                                    std::int64_t) {
 #pragma unroll
   for (int k = 0; k < N; ++k)
     if (double* const place = to.number(k)) *place = a[k].v;
-}
-
-// With fewer dimensions than three H is filled up as batch_walk does.
-template <class T>
-ILAW_KIT_INLINE void load_symmetric(full<device_number>& h, const node_array<T>& a, std::int64_t) {
-  const auto number = [&](int c) ILAW_KIT_LAMBDA { return static_cast<double>(a.at[c * a.component]); };
-  h.nn = number(0);
-  h.t11 = a.count > 1 ? number(1) : h.nn;
-  h.t22 = a.count == 3 || a.count == 6 ? number(2) : h.t11;
-  h.n1 = a.count == 6 ? number(3) : (a.count == full_in_plane ? number(2) : 0.0);
-  h.n2 = a.count == 6 ? number(4) : 0.0;
-  h.t12 = a.count == 6 ? number(5) : 0.0;
 }
 
 // Null where the array is absent, and without a branch: the compiler then knows that all arrays of an
@@ -169,14 +55,6 @@ template <class T>
 ILAW_KIT_INLINE T* place_in(const device_array& a, std::int64_t node) {
   return static_cast<T*>(a.at) + (a.at ? node * a.node_stride : 0);
 }
-template <class T>
-ILAW_KIT_INLINE node_array<T> array_at(const device_array& a, std::int64_t node, int count) {
-  return {place_in<T>(a, node), a.component_stride, count};
-}
-template <class Law, class T>
-ILAW_KIT_INLINE node_state<Law, T> state_at(const device_array& a, std::int64_t node, int dimension) {
-  return {place_in<T>(a, node), a.component_stride, dimension};
-}
 
 ILAW_KIT_INLINE std::int64_t node_of(const device_options& a, std::int64_t k) {
   if (a.index64) return a.index64[k] - a.index_base;
@@ -184,24 +62,25 @@ ILAW_KIT_INLINE std::int64_t node_of(const device_options& a, std::int64_t k) {
 }
 
 template <class Law, class Number>
-ILAW_KIT_INLINE view<at_node<Law, Number>> view_of(const device_arguments<Law>& a, std::int64_t node) {
-  view<at_node<Law, Number>> v{};
+ILAW_KIT_INLINE node_view<Law, Number> view_of(const device_arguments<Law>& a, std::int64_t node) {
+  node_view<Law, Number> v{};
   static_cast<view_options&>(v) = a;
   v.count = 1;
-  const auto open = [&](const array_card& card, const device_array& from, auto& to) ILAW_KIT_LAMBDA {
-    to = {place_in<std::remove_pointer_t<decltype(to.at)>>(from, node), from.component_stride,
-          card.count(a.dimension)};
+  const auto place = [&](const device_array& from, auto& to, int count) ILAW_KIT_LAMBDA {
+    to = {place_in<std::remove_pointer_t<decltype(to.at)>>(from, node), from.component_stride, count};
   };
+  const auto open = [&](const array_card& card, const device_array& from, auto& to)
+                        ILAW_KIT_LAMBDA { place(from, to, card.count(a.dimension)); };
   for_inputs(open, a, v);
   for_outputs(open, a, v);
-  v.delassus = array_at<const Number>(a.delassus, node, a.delassus_numbers);
-  v.status = array_at<std::uint8_t>(a.status, node, 1).at;
-  v.state_in = state_at<Law, const double>(a.state_in, node, a.dimension);
-  v.state_out = state_at<Law, double>(a.state_out, node, a.dimension);
-  v.frame_in = array_at<const double>(a.frame_in, node, 6);
-  v.frame_out = array_at<double>(a.frame_out, node, 6);
+  place(a.delassus, v.delassus, a.delassus_numbers);
+  place(a.state_in, v.state_in, a.dimension);
+  place(a.state_out, v.state_out, a.dimension);
+  place(a.frame_in, v.frame_in, frame_size);
+  place(a.frame_out, v.frame_out, frame_size);
+  v.status = place_in<std::uint8_t>(a.status, node);
 #pragma unroll
-  for (int k = 0; k < amount_count<Law>; ++k) v.amounts[k] = array_at<Number>(a.amounts[k], node, 1).at;
+  for (int k = 0; k < amount_count<Law>; ++k) v.amounts[k] = place_in<Number>(a.amounts[k], node);
   return v;
 }
 
@@ -230,12 +109,6 @@ ILAW_KIT_INLINE bool take_parameters_at(Law& law, const device_arguments<Law>& a
 
 // ---- one node
 
-// Laws in closed form, as kernel::run_pack, or with the solver: ask, solve and finish of one node.
-template <class Kernel, class Law, class View>
-ILAW_KIT_INLINE void step_node(const Law& law, const View& b, typename Kernel::checks_type c, tally& found,
-                               typename Kernel::limit& limits) {
-  Kernel::run_pack(law, kit::prepared(law, b.step), b, 0, c, found, limits, 0);
-}
 // Wide: the law on packs, whose solver may leave a node to the scalar fallback.
 template <class Law, class Wide, class Prepared>
 ILAW_KIT_INLINE void solve_node(const Law& law, const Wide& wide, const step_sizes& step,
@@ -258,9 +131,9 @@ ILAW_KIT_INLINE void solve_and_step_node(const Law& law, const Wide& wide, const
   Solver::take_state(p.node, b, 0, c);
   const typename Solver::results came = p.node;
   typename Wide::problem open;
-  const asked<device_number> asked = wide.ask(p.node, open);
-  const device_mask is_open = asked.open & !c.bad();
-  status_of<device_number> status = asked.status;
+  const asked<pack_of_one> asked = wide.ask(p.node, open);
+  const mask_of_one is_open = asked.open & !c.bad();
+  status_of<pack_of_one> status = asked.status;
   if (any(is_open)) {
     typename Wide::answer answer{};
     solve_node(law, wide, b.step, open, answer, prepared);
@@ -269,7 +142,7 @@ ILAW_KIT_INLINE void solve_and_step_node(const Law& law, const Wide& wide, const
   Solver::check_result(p.node, b, c);
   Solver::store_pack(wide, p, b, 0, status, !c.bad());
   Solver::steps::add(limits, wide, p.node, b.varying, !c.bad());
-  Solver::add_bad(found, c, {true}, 0);
+  Solver::add_bad(found, c, 0);
 }
 
 // Node k of a batch.
@@ -277,7 +150,7 @@ template <class Law, device_variant Variant>
 ILAW_KIT_INLINE void run_node(const device_arguments<Law>& a, std::int64_t k) {
   using Number = std::conditional_t<Variant.numbers == device_numbers::of_float, float, double>;
   using variant = device_loop<Law, Variant>;
-  using loop = typename variant::template kernel_on<at_node<Law, Number>, device_number>;
+  using loop = typename variant::template kernel_on<node_view<Law, Number>>;
   if (k >= a.count) return;
   const std::int64_t node = node_of(a, k);
   const auto b = view_of<Law, Number>(a, node);
@@ -287,14 +160,14 @@ ILAW_KIT_INLINE void run_node(const device_arguments<Law>& a, std::int64_t k) {
     c.require({take_parameters_at<Law, Number>(
                   law, a, node, std::make_index_sequence<static_cast<std::size_t>(parameter_count<Law>)>{})},
               reason_parameter);
-  const auto wide = broadcast<device_number>(law);
+  const auto wide = broadcast<pack_of_one>(law);
   tally found;
   typename loop::limit limits = loop::steps::start(a.law, b.varying);
   if constexpr (variant::solves)
-    solve_and_step_node<typename variant::template solver_kernel_on<at_node<Law, Number>, device_number>>(
-        law, wide, b, c, found, limits);
+    solve_and_step_node<typename variant::template solver_kernel_on<node_view<Law, Number>>>(law, wide, b, c,
+                                                                                             found, limits);
   else
-    step_node<loop>(wide, b, c, found, limits);
+    loop::run_pack(wide, kit::prepared(wide, b.step), b, 0, c, found, limits);
   if (a.reasons) a.reasons[k] = static_cast<std::uint8_t>(found.reason);
   if (a.limits) {
     a.limits[3 * k] = limits.least.v;
