@@ -50,7 +50,8 @@ together() {
   for k in "${!names[@]}"; do
     echo "== ${names[k]}"
     cat "${logs[k]}"
-    read -r code took <"${logs[k]}.end"
+    code=1 took=0  # as where the disk was full
+    read -r code took <"${logs[k]}.end" || code=1
     ended "${names[k]}" "$code" "$took"
     rm "${logs[k]}" "${logs[k]}.end"
   done

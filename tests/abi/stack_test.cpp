@@ -17,9 +17,9 @@ namespace {
 
 // Laws that need more than was promised (GCC 12, v4): whoever brings one of them within it
 // takes it off the list. The loops of the kit keep copies of a block of nodes on the stack.
-const std::set<std::string> too_deep = {"cohesive",       "coulomb",        "grain", "impact",  "penalty",
-                                        "postit",         "rate_and_state", "rccm",  "rolling", "rubber",
-                                        "slip_weakening", "table_friction", "tie"};
+const std::set<std::string> too_deep = {"cohesive", "coulomb",        "grain",         "penalty",
+                                        "postit",   "rate_and_state", "rccm",          "rolling",
+                                        "rubber",   "slip_weakening", "table_friction"};
 
 // ---- the deepest byte that a call touches
 

@@ -41,7 +41,7 @@ ilaw_add_wrong_law(cohesive_transverse cohesive plugins/bond/bonded_inertia.hpp
 # Writes its state before its node is solved.
 ilaw_add_wrong_law(cohesive_asks cohesive plugins/bond/bond.hpp
                    "    if (any(open)) {\n      p = {as_full(node.delassus)"
-                   "    if (any(open)) {\n      node.state.opening = select(open, node.state.position, node.state.opening);\n      p = {as_full(node.delassus)")
+                   "    if (any(open)) {\n      node.state.opening = node.state.position;\n      p = {as_full(node.delassus)")
 # Loses adhesion per step, not per time.
 ilaw_add_wrong_law(rccm_step rccm plugins/rccm/rccm.cpp "viscosity / all.step.velocity_step"
                    "viscosity / (all.step.velocity_step > 0.0 ? 0x1p-10 : 0.0)")

@@ -168,7 +168,7 @@ class Motions(unittest.TestCase):
         with ThreadPoolExecutor(2) as pool:
             found = list(pool.map(lambda run: complaints(run[0], table["scenes"], run[1]), runs))
         for (row, values), wrong in zip(runs, found):
-            with self.subTest(of=row["of"], **values):
+            with self.subTest(row["of"], **values):
                 self.assertEqual(wrong, [])
 
 

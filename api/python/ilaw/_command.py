@@ -158,6 +158,7 @@ def text_of(value: float, form: str) -> str:
 
 def print_rows(rows: Sequence[Sequence[str]]) -> None:
     """Columns as wide as their longest cell; the last one of a row is free."""
+    rows = [[printable(cell) for cell in row] for row in rows]
     widths = [max(len(row[c]) for row in rows if c + 1 < len(row)) for c in range(max(map(len, rows)) - 1)]
     for row in rows:
         print("".join(f"{cell:{width + 2}}" for cell, width in zip(row[:-1], widths)) + row[-1])

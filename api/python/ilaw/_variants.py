@@ -159,10 +159,11 @@ class Scenes:
         run = self._run_scene({**scene, "time": time}, self.quick_room, *kept)
         names, _ = run.history()
         dt, time = run.summary["dt"], scene["time"]
-        masses = [float(interface["least_mass"]) for interface in run.summary["interfaces"]]
+        interfaces = [one for one in run.summary["interfaces"] if "edges_of" not in one]  # those count in their interface
+        masses = [float(interface["least_mass"]) for interface in interfaces]
         return Probe(dt, steps_of(time["end"], dt), dt / time[key_of(time)], float(run.summary["critical_step"]),
                      min(masses, default=math.inf), sum(name.endswith(".u0") for name in names),
-                     [interface["name"] for interface in run.summary["interfaces"]])  # fmt: skip
+                     [interface["name"] for interface in interfaces])  # fmt: skip
 
     def trace(self, scene: Scene, names: list[str], law: str = "") -> Trace:
         """names: of the interfaces."""

@@ -8,13 +8,15 @@ import copy
 import itertools
 import json
 import re
+import signal
 import subprocess
 import sys
 import threading
 from pathlib import Path
 from typing import Any, NamedTuple, Optional, Sequence
 
-from ._command import DONE, FAILED, BadInput, HeldFolder, Progress, remove_pictures, run_command, write_whole
+from ._command import (DONE, FAILED, BadInput, HeldFolder, Progress, complain, remove_pictures, run_command,
+                       write_whole)  # fmt: skip
 from ._exact import Scene
 from ._results import Run
 from ._variants import Failed, Scenes
@@ -77,7 +79,7 @@ def set_value(scene: Scene, pointer: str, value: Any) -> None:
     def place(part: Any, token: str) -> Any:
         if isinstance(part, dict):
             return token
-        if isinstance(part, list) and token.isdigit() and int(token) < len(part):
+        if isinstance(part, list) and re.fullmatch("0|[1-9][0-9]*", token) and int(token) < len(part):
             return int(token)
         raise BadInput(f"{pointer}: found no such key to set")
 
@@ -99,6 +101,14 @@ def name_of(settings: Sequence[Setting], values: Sequence[Any]) -> str:
     return "_".join(folder_name(f"{setting.name}={text}") for setting, text in zip(settings, texts))
 
 
+def without_work(scene: Scene) -> Scene:
+    """Asked what it works out, and not to find its state at rest nor to write more than it must."""
+    rest = {key: value for key, value in scene.items() if key != "prestress"}
+    if isinstance(rest.get("output"), dict):
+        rest["output"] = {key: value for key, value in rest["output"].items() if key not in ("fields", "events")}
+    return rest
+
+
 def make_variants(scenes: Scenes, settings: Sequence[Setting]) -> list[Variant]:
     """All combinations of values, each as a file. Refuses what `ilaw run` refuses."""
     source = scenes.parse()
@@ -109,7 +119,7 @@ def make_variants(scenes: Scenes, settings: Sequence[Setting]) -> list[Variant]:
         try:
             for setting, value in zip(settings, values):
                 set_value(scene, setting.pointer, value)
-            steps = scenes.probe(scene).steps
+            steps = scenes.probe(without_work(scene)).steps
         except BadInput as reason:
             raise BadInput(f"{name}: {reason}") from None
         except Failed:  # in its first step: its run will say so
@@ -146,7 +156,7 @@ class Sweep:
             self.running.add(child)
         assert child.stderr
         for line in child.stderr:
-            told = re.match(r'\{"task":\s*"(\w+)".*"done":\s*([^,}]+)', line)
+            told = re.match(r'\{"task":\s*"(\w+)".*"done":\s*(\d+(?:\.\d*)?(?:e[+-]?\d+)?)[,}]', line)
             with self.lock:
                 if told and told[1] == "run":
                     self.done[variant.name] = float(told[2])
@@ -156,6 +166,8 @@ class Sweep:
         code = child.wait()
         with self.lock:
             self.running.discard(child)
+            if code < 0:
+                complain(f"{variant.name}: its process ended: {signal.strsignal(-code)}", FAILED)
         return code
 
     def stop(self) -> None:
@@ -167,12 +179,14 @@ class Sweep:
 
     def run_all(self, variants: list[Variant]) -> list[int]:
         with concurrent.futures.ThreadPoolExecutor(self.options.threads) as pool:
-            futures = [pool.submit(self.run, variant) for variant in variants]
+            futures: list[concurrent.futures.Future[int]] = []
             try:
+                futures += [pool.submit(self.run, variant) for variant in variants]
                 concurrent.futures.wait(futures)
             except KeyboardInterrupt:
                 self.stop()
-            return [future.result() for future in futures]
+            codes = [future.result() for future in futures]
+            return codes + [FAILED] * (len(variants) - len(codes))
 
 
 def sweep(options: argparse.Namespace) -> int:

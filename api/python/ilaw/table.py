@@ -70,7 +70,10 @@ def table_of(runs: Sequence[Run], columns: Sequence[str]) -> list[list[str]]:
         scene = flat(run.scene)
         rows.append([run.folder.resolve().name, *(text_of(scene.get(pointer, "-")) for pointer in pointers)])
     for column in columns or known:
-        cells = [cell_of(run, own, column) for run, own in zip(runs, numbers)]
+        if not columns:
+            cells = [text_of(own.get(column)) for own in numbers]
+        else:
+            cells = [cell_of(run, own, column) for run, own in zip(runs, numbers)]
         if all(cell is None for cell in cells):
             names = runs[0].history(lambda name: True)[0]
             found = f"{column}: found in no run, expected a number of summary.json, one of {', '.join(known)}"
@@ -83,6 +86,8 @@ def table_of(runs: Sequence[Run], columns: Sequence[str]) -> list[list[str]]:
 
 def open_runs(folders: Sequence[Path]) -> list[Run]:
     """Files among several folders, as a sweep and its pictures leave beside its runs, are passed over."""
+    if len(folders) == 1 and folders[0].is_file():
+        raise BadInput("found a file, expected a folder that `ilaw run` wrote")
     try:
         runs = [Run(folder) for folder in folders if len(folders) == 1 or not folder.is_file()]
     except UnreadableRun as reason:

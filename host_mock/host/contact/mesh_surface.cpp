@@ -78,7 +78,7 @@ void MeshSurface::follow(const Dofs& u) {
 // As long as nobody can have come into reach, positions are not looked at.
 bool MeshSurface::find_near(const Dofs& u, const Approach& approach) {
   travelled_ += approach.travelled;
-  const bool is_far = is_apart() || travelled_ + approach.reach < nearby_.slack;
+  const bool is_far = is_apart(approach.reach) || travelled_ + approach.reach < nearby_.slack;
   if (!approach.is_forced && approach.is_idle && is_far) return false;
   follow(u);
   travelled_ = 0.0;

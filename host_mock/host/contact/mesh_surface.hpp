@@ -46,7 +46,7 @@ class MeshSurface : public Counterpart {
 
  private:
   // Whether no node can be in reach in this step, as others know.
-  virtual bool is_apart() const { return false; }
+  virtual bool is_apart(double /*reach*/) const { return false; }
 
   struct Destroy {
     void operator()(ilaw_facets* search) const { ilaw_facets_destroy(search); }

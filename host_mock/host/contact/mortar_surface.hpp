@@ -29,8 +29,10 @@ class MortarSurface : public MeshSurface {
   bool find_near(const Dofs& u, const Approach& approach) override;
   double horizon() const override { return horizon_; }
   bool is_held(int node_index) const override;
-  // After find_near: no facet is in reach of another in this step.
-  bool is_apart() const override { return is_list_made_ && listed_.empty(); }
+  // After find_near: no facet is that close to another in this step.
+  bool is_apart(double reach) const override {
+    return is_list_made_ && listed_.empty() && travelled_ + reach < horizon_;
+  }
   void save(std::ostream& out) const override;
   void load(std::istream& in) override;
 
@@ -103,7 +105,7 @@ class EdgeRows : public MeshSurface {
 
  private:
   // Both surfaces were compared in this step, since edge rows come behind their interface.
-  bool is_apart() const override { return faces_.is_apart(); }
+  bool is_apart(double reach) const override { return faces_.is_apart(reach); }
 
   double deepest_;
   const MortarSurface& faces_;

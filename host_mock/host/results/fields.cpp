@@ -31,7 +31,7 @@ namespace {
 
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
-// Edge rows write into the arrays of their interface, at other nodes.
+// Edge rows write the traction into the array of their interface, at other nodes.
 vtkDoubleArray* add_to(vtkDataSetAttributes& arrays, const std::string& name, int components, vtkIdType count,
                        double value) {
   if (auto* known = vtkDoubleArray::SafeDownCast(arrays.GetArray(name.c_str()))) return known;
@@ -117,21 +117,14 @@ void add_traction(vtkUnstructuredGrid& grid, const Interface& interface, const s
   }
 }
 
-vtkIntArray* add_status(vtkUnstructuredGrid& grid, const std::string& name, int node_count) {
-  vtkPointData& arrays = *grid.GetPointData();
-  if (auto* known = vtkIntArray::SafeDownCast(arrays.GetArray(name.c_str()))) return known;
-  vtkNew<vtkIntArray> status;
-  status->SetName(name.c_str());
-  status->SetNumberOfTuples(node_count);
-  status->FillValue(-1);
-  arrays.AddArray(status);
-  return status;
-}
-
 void add_interface(vtkUnstructuredGrid& grid, const Interface& interface, const std::string& prefix,
                    int node_count, const Integrator& integrator) {
   vtkDoubleArray* gap = add_array(grid, prefix + "gap", node_count, 1, no_value);
-  vtkIntArray* status = add_status(grid, prefix + "status", node_count);
+  vtkNew<vtkIntArray> status;
+  status->SetName((prefix + "status").c_str());
+  status->SetNumberOfTuples(node_count);
+  status->FillValue(-1);
+  grid.GetPointData()->AddArray(status);
   const std::vector<ShownState> states = shown_states(interface.info());
   std::vector<vtkDoubleArray*> arrays;
   for (const ShownState& state : states)
@@ -175,7 +168,7 @@ void Fields::write(const Integrator& integrator) {
   for (const auto& interface : scene_.interfaces) {
     const std::string& name = is_own(interface) ? interface->name() : interface->setup().edges_of;
     const std::string prefix = is_alone ? "" : name + ".";
-    add_interface(*grid, *interface, prefix, model.node_count(), integrator);
+    if (is_own(interface)) add_interface(*grid, *interface, prefix, model.node_count(), integrator);
     add_traction(*grid, *interface, prefix, model.node_count(), scene_.dt);
   }
   write_next("fields", *grid, integrator.time());

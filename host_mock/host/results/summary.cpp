@@ -33,16 +33,18 @@ json describe_interface(const Scene& scene, const Interface& interface, double f
   double least_mass = std::numeric_limits<double>::infinity();
   for (const int node : interface.nodes())
     least_mass = std::min(least_mass, scene.model->mass()[Eigen::Index{node} * scene.model->dimension()]);
-  return {{"name", interface.name()},
-          {"law", interface.setup().law},
-          {"library", interface.library().path()},
-          {"library_version", interface.library().plugin().version},
-          {"nodes", interface.nodes().size()},
-          {"least_mass", number_or_inf(least_mass)},
-          {"first_contact", std::isinf(first_contact) ? json() : json(first_contact)},
-          {"state_size", interface.info().state_size},
-          {"amounts", describe_amounts(interface)},
-          {"bytes_per_node", interface.bytes_per_contact()}};
+  json described = {{"name", interface.name()},
+                    {"law", interface.setup().law},
+                    {"library", interface.library().path()},
+                    {"library_version", interface.library().plugin().version},
+                    {"nodes", interface.nodes().size()},
+                    {"least_mass", number_or_inf(least_mass)},
+                    {"first_contact", std::isinf(first_contact) ? json() : json(first_contact)},
+                    {"state_size", interface.info().state_size},
+                    {"amounts", describe_amounts(interface)},
+                    {"bytes_per_node", interface.bytes_per_contact()}};
+  if (const std::string& owner = interface.setup().edges_of; !owner.empty()) described["edges_of"] = owner;
+  return described;
 }
 
 // What to cite: of each law that the scene uses, once, the references of its description.

@@ -51,9 +51,11 @@ PrestressSetup read_prestress(const json& given) {
 void check_names(const Scene& scene) {
   std::set<std::string> seen;
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i)
-    if (!seen.insert(scene.interfaces[i]->name()).second)
-      throw mistake(at("/interfaces", i) + "/name", "'" + scene.interfaces[i]->name() + "' twice",
-                    "a different name for each");
+    if (const std::string& name = scene.interfaces[i]->name(); !seen.insert(name).second) {
+      const bool is_own = scene.interfaces[i]->setup().edges_of.empty();
+      throw mistake(is_own ? at("/interfaces", i) + "/name" : "/interfaces", "'" + name + "' twice",
+                    is_own ? "a different name for each" : "another name: it is that of edge rows");
+    }
 }
 
 std::string read_file(const std::filesystem::path& file) {

@@ -36,9 +36,16 @@ void give_default(json& source, const char* bodies, const char* key, const json&
     if (!body.contains(key)) body[key] = value;
 }
 
-// "both_sides" makes two interfaces of one.
+bool has_edge_rows(const Scene& read) {
+  return std::any_of(read.interfaces.begin(), read.interfaces.end(),
+                     [](const auto& one) { return !one->setup().edges_of.empty(); });
+}
+
+// "both_sides" makes two interfaces of one; edge rows stand behind those of the scene.
 bool has_each_interface(const json& source, const Scene& read) {
-  return source["interfaces"].size() == read.interfaces.size();
+  const auto own = std::count_if(read.interfaces.begin(), read.interfaces.end(),
+                                 [](const auto& one) { return one->setup().edges_of.empty(); });
+  return source["interfaces"].size() == static_cast<std::size_t>(own);
 }
 
 // ---- more contacts, more points ----
@@ -321,7 +328,7 @@ Made in_other_units(const json& source, const Scene& read) {
   give_default(made.source, "bars", "section", units.length * units.length);
   if (source["model"]["type"] == "rotating_spring" && !source["model"].contains("area"))
     made.source["model"]["area"] = units.length * units.length;
-  for (std::size_t i = 0; all && i < read.interfaces.size(); ++i) {
+  for (std::size_t i = 0; all && i < source["interfaces"].size(); ++i) {
     json& parameters = made.source["interfaces"][i]["parameters"];
     if (parameters.is_null()) parameters = json::object();
     all = scale_parameters(parameters, *read.interfaces[i]->library().law(read.interfaces[i]->setup().law),
@@ -340,7 +347,7 @@ Made with_parameters(const json& source, const Scene& read, Form form) {
   made.excuse = "tell the two tangential axes apart: expected a tangent";
   bool some = false;
   if (!has_each_interface(source, read)) return {};
-  for (std::size_t i = 0; i < read.interfaces.size(); ++i) {
+  for (std::size_t i = 0; i < source["interfaces"].size(); ++i) {
     const Interface& interface = *read.interfaces[i];
     const ilaw_law& law = *interface.library().law(interface.setup().law);
     json& given = made.source["interfaces"][i]["parameters"];
@@ -366,6 +373,7 @@ Made as_tables(const json& source, const Scene& read) {
 }
 
 Made per_node(const json& source, const Scene& read) {
+  if (has_edge_rows(read)) return {};  // a law with values per node has none
   return with_parameters(
       source, read, [](const ilaw_parameter& parameter, const json& value, const Interface& interface) {
         if (!(parameter.flags & ILAW_FLAG_ALLOWS_PER_NODE)) return json();
