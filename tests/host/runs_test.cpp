@@ -84,14 +84,18 @@ TEST(Sweep, ReadsMeshesInEachOfItsProcesses) {
   }
 }
 
+void wait_for(const fs::path& file) {
+  for (int k = 0; k < 5000 && !fs::exists(file); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+}
+
 // Ends the program by a signal once a file is there; its messages.
 std::string interrupted(const json& scene, const fs::path& folder, const std::string& begun,
                         const std::vector<std::string>& options = {}) {
   std::vector<std::string> arguments = {"run", written(scene, folder), "--out", folder.string()};
   arguments.insert(arguments.end(), options.begin(), options.end());
   const pid_t child = start_program(arguments, folder / "messages");
-  for (int k = 0; k < 5000 && !fs::exists(folder / begun); ++k)
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  wait_for(folder / begun);
   kill(child, SIGTERM);
   int status = 0;
   waitpid(child, &status, 0);
@@ -110,6 +114,30 @@ TEST(Sweep, EndsAtAnInterrupt) {
     EXPECT_TRUE(json_of(folder / name / "summary.json")["interrupted"]) << name;
   EXPECT_FALSE(fs::exists(folder / "mass=3"));
   EXPECT_EQ(rows_of(text_of(folder / "sweep.csv")).size(), 3U);
+}
+
+// So do its runs if it is killed itself; a run that is killed is named.
+TEST(Sweep, IsKilledWithItsRunsAndNamesThoseThatAre) {
+  const auto folder = fresh_folder();
+  json scene = sliding();
+  scene["time"]["end"] = 1e6;
+  const pid_t sweep = start_program({"run", written(scene, folder), "--out", (folder / "all").string(),
+                                     "--threads", "2", "--set", "/model/points/0/mass=1,2,3"},
+                                    folder / "messages");
+  for (const char* name : {"mass=1", "mass=2"}) wait_for(folder / "all" / name / "history.csv.partial");
+  pid_t run = 0;
+  std::istringstream(text_of(folder / "all/mass=1/ilaw.lock").substr(8)) >> run;  // "process 4711 on ..."
+  ASSERT_GT(run, 1);
+  kill(run, SIGKILL);
+  wait_for(folder / "all/mass=3/history.csv.partial");
+  EXPECT_THAT(text_of(folder / "messages"), HasSubstr("mass=1: its process ended: Killed"));
+  kill(sweep, SIGKILL);
+  int status = 0;
+  waitpid(sweep, &status, 0);
+  for (const char* name : {"mass=2", "mass=3"}) {
+    wait_for(folder / "all" / name / "summary.json");
+    EXPECT_TRUE(json_of(folder / "all" / name / "summary.json")["interrupted"]) << name;
+  }
 }
 
 // It ends at its next step, too, without results but a summary that says so.

@@ -86,8 +86,6 @@ def table_of(runs: Sequence[Run], columns: Sequence[str]) -> list[list[str]]:
 
 def open_runs(folders: Sequence[Path]) -> list[Run]:
     """Files among several folders, as a sweep and its pictures leave beside its runs, are passed over."""
-    if len(folders) == 1 and folders[0].is_file():
-        raise BadInput("found a file, expected a folder that `ilaw run` wrote")
     try:
         runs = [Run(folder) for folder in folders if len(folders) == 1 or not folder.is_file()]
     except UnreadableRun as reason:
