@@ -11,6 +11,7 @@ processor=$1
 shift
 triplet=${processor/#ppc64le/powerpc64le}-linux-gnu
 build=build/$processor
+mkdir -p "$build"
 scenes=("$@")
 [ $# -gt 0 ] || mapfile -t scenes < <(git ls-files 'host_mock/scenes/*.json' 'plugins/*/*.json')
 
