@@ -8,6 +8,7 @@
 
 #include <signal.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <array>
@@ -73,6 +74,9 @@ void on_interrupt(int signal) {
   for (const int each : interrupts) std::signal(each, SIG_DFL);
 }
 
+// May come once for each thread of the parent.
+void on_end_of_parent(int /*signal*/) { stop_signal = SIGTERM; }
+
 void handle(int signal, void (*handler)(int), int flags) {
   struct sigaction action {};
   action.sa_handler = handler;
@@ -113,6 +117,11 @@ void catch_interrupts() {
   }
   handle(SIGXFSZ, SIG_IGN, 0);  // a file that may not grow is an error to report, not one to die of
   handle(SIGPIPE, SIG_IGN, 0);  // and so is a reader who has left
+}
+
+void stop_with_parent() {
+  handle(SIGUSR1, on_end_of_parent, SA_RESTART);
+  prctl(PR_SET_PDEATHSIG, SIGUSR1);
 }
 
 }  // namespace ilaw::host

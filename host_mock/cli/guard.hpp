@@ -13,4 +13,7 @@ void name_crashes_of_threads();
 // ends the program at once. Files under their final names are whole at any time.
 void catch_interrupts();
 
+// From here on the end of the process that started this one makes stop_requested() true.
+void stop_with_parent();
+
 }  // namespace ilaw::host

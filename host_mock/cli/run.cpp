@@ -24,9 +24,6 @@
 #include "scene/read_meshes.hpp"
 #include "scene/scene.hpp"
 
-#include <signal.h>
-#include <sys/prctl.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -398,7 +395,7 @@ int run(const RunOptions& options) {
   place_arrays_one_after_another();
   set_threads(options.threads);
   name_crashes();
-  if (!options.text.empty()) ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // part of a sweep, and ends with it
+  if (!options.text.empty()) stop_with_parent();  // part of a sweep
   warn_of_search_path();
   Scene scene = in_scene(options.scene, [&] {
     return read_scene(read_scene_source(options.text.empty() ? options.scene : options.text), options.scene);
