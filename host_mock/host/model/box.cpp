@@ -25,12 +25,12 @@ struct Face {
   const char* name;
   int axis, side, first, second;
 };
-constexpr std::array<Face, 6> faces{{{"x_min", 0, 0, 2, 1},
-                                     {"x_max", 0, 1, 1, 2},
-                                     {"y_min", 1, 0, 0, 2},
-                                     {"y_max", 1, 1, 2, 0},
-                                     {"z_min", 2, 0, 1, 0},
-                                     {"z_max", 2, 1, 0, 1}}};
+constexpr std::array<Face, 6> box_faces{{{"x_min", 0, 0, 2, 1},
+                                         {"x_max", 0, 1, 1, 2},
+                                         {"y_min", 1, 0, 0, 2},
+                                         {"y_max", 1, 1, 2, 0},
+                                         {"z_min", 2, 0, 1, 0},
+                                         {"z_max", 2, 1, 0, 1}}};
 
 // Part of an element's extent that belongs to a node of a line of elements: half at the ends.
 double share(int position, int elements) { return position == 0 || position == elements ? 0.5 : 1.0; }
@@ -60,7 +60,7 @@ NodeSet face_of(const Grid& grid, const Eigen::Vector3d& element_size, const Fac
 // no face is named.
 std::vector<double> boundary_areas(const Grid& grid, const std::map<std::string, NodeSet>& sets) {
   std::vector<Eigen::Vector3d> vectors(static_cast<std::size_t>(grid.node_count()), Eigen::Vector3d::Zero());
-  for (const Face& face : faces) {
+  for (const Face& face : box_faces) {
     const NodeSet& set = sets.at(face.name);
     for (std::size_t k = 0; k < set.nodes.size(); ++k)
       vectors[static_cast<std::size_t>(set.nodes[k])][face.axis] += set.areas[k];
@@ -104,7 +104,7 @@ MeshSetup box_of(const BoxSetup& setup) {
   add_elements(grid, box.topology);
   box.topology.element_size = element_size;
   std::map<std::string, NodeSet>& sets = box.topology.sets;
-  for (const Face& face : faces) sets[face.name] = face_of(grid, element_size, face);
+  for (const Face& face : box_faces) sets[face.name] = face_of(grid, element_size, face);
   NodeSet& whole = sets[""];
   whole.areas = boundary_areas(grid, sets);
   whole.nodes.resize(whole.areas.size());
