@@ -127,6 +127,7 @@ void add_interface(vtkUnstructuredGrid& grid, const Interface& interface, const 
   grid.GetPointData()->AddArray(status);
   const std::vector<ShownState> states = shown_states(interface.info());
   std::vector<vtkDoubleArray*> arrays;
+  arrays.reserve(states.size());
   for (const ShownState& state : states)
     arrays.push_back(add_array(grid, prefix + state.name, node_count, state.is_vector ? 3 : 1, no_value));
   interface.setup().counterpart->follow(integrator.displacement());
