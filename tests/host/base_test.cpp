@@ -1,8 +1,9 @@
-// Clocks that leave most steps out, exceptions of workers, and sums between rows.
+// Clocks that leave most steps out, exceptions of workers, sums between rows, and the time to read a scene.
 #include "base/clock.hpp"
 #include "base/parallel.hpp"
 #include "host_runner.hpp"
 #include "results/forces.hpp"
+#include "scene/validation.hpp"
 
 #include <omp.h>
 
@@ -92,6 +93,24 @@ TEST(Forces, BetweenRowsAreInTheSummary) {
   }
   EXPECT_NEAR(forces.summary()["weight"]["impulse"][0].get<double>(), 2 * (integrator.velocity()[0] - start),
               1e-14);
+}
+
+// Scenes have a point, an element or a table row a line: reading four times as many takes four times as long,
+// and would take sixteen if each looked at those before it.
+TEST(ParseScene, TakesTimeInProportionToTheText) {
+  const auto seconds_for = [](int count) {
+    std::string text = R"({"points": [{"mass": 1})";
+    for (int k = 1; k < count; ++k) text += R"(, {"mass": 1})";
+    text += "]}";
+    double least = 1e9;  // others may hold the processor's cache
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      const double start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+      EXPECT_EQ(parse_scene(text)["points"].size(), static_cast<std::size_t>(count));
+      least = std::min(least, clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start);
+    }
+    return least;
+  };
+  EXPECT_LT(seconds_for(60000), 8.0 * seconds_for(15000));
 }
 
 }  // namespace

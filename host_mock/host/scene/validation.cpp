@@ -155,7 +155,9 @@ bool is_allowed(const json& value, const json& part) {
   if (value.is_string()) {
     const auto& text = value.get_ref<const std::string&>();
     const auto begins = [](char byte) { return (byte & 0xC0) != 0x80; };  // a character of UTF-8
-    return std::regex_search(text, std::regex(part.value("pattern", ""))) &&
+    const auto pattern = part.find("pattern");
+    return (pattern == part.end() ||
+            std::regex_search(text, std::regex(pattern->get_ref<const std::string&>()))) &&
            within("minLength", "maxLength", static_cast<std::size_t>(std::ranges::count_if(text, begins)));
   }
   if (!value.is_number()) return true;
@@ -170,7 +172,9 @@ void check(const json& value, const json& given, const std::string& pointer, std
            Mistakes& mistakes) {
   const json& part = resolved(given);
   const std::size_t before = mistakes.size();
-  for (const json& one : part.value("anyOf", json::array())) {
+  const auto kinds = part.find("anyOf");
+  for (std::size_t k = 0; kinds != part.end() && k < kinds->size(); ++k) {
+    const json& one = (*kinds)[k];
     Mistakes own;
     check(value, one, pointer, depth, own);
     if (own.empty()) {
@@ -189,8 +193,8 @@ void check(const json& value, const json& given, const std::string& pointer, std
       if (const json& known = member_of(part, key); !known.is_null())
         check(member, known, pointer + "/" + key, depth + 1, mistakes);
   if (value.is_object() && part.contains("properties")) check_keys(value, part, pointer, depth, mistakes);
-  if (part.contains("anyOf") && mistakes.size() == before) {
-    if (value.is_object()) check_keys(value, keys_of_kinds(part["anyOf"]), pointer, depth, mistakes);
+  if (kinds != part.end() && mistakes.size() == before) {
+    if (value.is_object()) check_keys(value, keys_of_kinds(*kinds), pointer, depth, mistakes);
     if (mistakes.size() > before) return;
   } else if (is_allowed(value, part)) {
     return;
