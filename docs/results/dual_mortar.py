@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Dual weights against closed forms, beside one and both sides: figures of docs/theory/mortar.md.
+"""Dual weights against closed forms, beside node to facet: figures of docs/theory/mortar.md.
 
 Usage: ILAW_PATH=build/release/lib/ilaw docs/results/dual_mortar.py build/release/bin/ilaw [--cases ...] [--sides ...]
 
@@ -374,7 +374,7 @@ def stack(program, side):
             own, other = ("a", "b") if finer != side.endswith("coarse") else ("b", "a")
             joints.append({"name": f"j{k}", "law": "coulomb", "parameters": {"friction": 0.5}, "nodes": faces[own],
                            "against": {"surface": faces[other]}
-                           | ({"discretization": "dual_mortar"} if side.startswith("dual") else {})})
+                           | ({} if side.startswith("dual") else {"discretization": "node_to_facet"})})
         summary, rows = run(program, {
             "model": {"type": "blocks", "blocks": blocks}, "interfaces": joints, "time": {"cfl": 0.8, "end": 3.0},
             "loads": [{"type": "motion", "nodes": "b0.z_min"}, {"type": "damping", "rate": 1},

@@ -204,9 +204,9 @@ void AuditedInterface::check_node(int node_index, const AuditedStep& step) {
   const double bound = law_bound * speed + rounded / step.dt;
   work_scale_ += call.impulse.norm() * (call.v_free.norm() + call.v_previous.norm() + change.norm()) +
                  call.impulse.norm() * step.speed;
-  // A driven node has next to no H: within the bound its impulse is off by a large one.
-  if (const double least = call.delassus.minCoeff(); least < call.delassus.maxCoeff())
-    work_rounding_ += bound / least * speed;
+  // Within the bound an impulse is off by bound / H, which is large at driven nodes, with next to no H.
+  if (const double least = call.delassus.minCoeff(); least > 0.0)
+    work_rounding_ += bound / least * (least < call.delassus.maxCoeff() ? speed : bound);
   if (!(law_.info().capabilities & ILAW_CAN_ADHERE) && change.dot(call.normal) < -bound)
     fail(node_index,
          formatted("cone: the impulse %.3g pulls, and the law cannot adhere", call.impulse.dot(call.normal)));

@@ -153,6 +153,32 @@ def test_ranks_with_different_kinds_of_contacts_take_one_step(seed, width):
         np.testing.assert_allclose(velocity, alone, atol=1e-11)
 
 
+def test_a_rank_without_contacts_takes_the_same_iterations():
+    """Anderson's corrections of this problem are too large 33 times. If each rank judged its own, the rank without
+    contacts would go on with another one than the rank that goes back."""
+    random, count = np.random.default_rng(0), 6
+    mass = 10 ** random.uniform(-1, 1, count)
+    v = 1e-2 * random.normal(size=(count, 3)) - [0, 0, G * H]
+    body, counterpart = random.integers(0, count, (2, 2 * count)).astype(np.int32)
+    counterpart[(counterpart == body) | (random.random(2 * count) < 0.2)] = -1
+    normal = random.normal(size=(2 * count, 3)) + [0, 0, 2]
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+
+    def solve(rank, exchange=None):
+        mine = slice(0 if rank == 1 else None)
+        contacts = Contacts(law(friction=0.5), body=body[mine], counterpart=counterpart[mine], gap=np.zeros(len(body[mine])),
+                            normal=normal[mine])  # fmt: skip
+        bodies = Bodies(v_free=v, inverse_mass=1 / mass, v_previous=np.zeros_like(v), owned=0 if rank == 1 else count)
+        report = Solver().solve(bodies, [contacts], time=H, tolerance=1e-10, most_sweeps=1000, exchange=exchange)
+        return report.sweeps, report.method, bodies.velocity
+
+    sweeps, method, alone = solve(2)
+    assert method == coupled.Method.ANDERSON
+    for found in on_two_ranks(count, solve):
+        assert found[:2] == (sweeps, method)
+        np.testing.assert_allclose(found[2], alone, atol=1e-12)
+
+
 def test_what_an_exchange_raises_comes_out():
     class Broken:
         def sum_bodies(self, values):

@@ -2,7 +2,7 @@
 starts, steps that are repeated, refusals, other threads, processes, ranks and problems.
 
 A solver keeps its memory and none of the numbers in it. So each solve must have the bits of a new solver, with the
-contacts in another order as well; and the laws alone, asked at the velocities that came out, must answer with the
+contacts in another order as well, unless they have the same bodies; and the laws alone, asked at the velocities that came out, must answer with the
 impulses. A sequence that fails is shortened. ILAW_SOLVER_SEED draws others, ILAW_SOLVER_SEQUENCES more of them.
 """
 import os
@@ -272,10 +272,15 @@ class Machine:
         v, w = (np.roll(array, first, axis=0) for array in (bodies.velocity, bodies.spin if kind.rotates else w))
         return Found(contacts, v, w, said), report
 
+    def bodies_of(self, contact):
+        return self.kind.body[contact], self.kind.counterpart[contact]
+
     def solve(self, action):
         new, report = self.call(Solver(), self.order, action)
-        other, _ = self.call(Solver(), sorted(self.order), action)
+        # Contacts of the same bodies keep their order: it decides which of several solutions is found.
+        other, _ = self.call(Solver(), sorted(self.order, key=self.bodies_of), action)
         demand(new == other, "the order of contacts changes bits")
+        self.judge(action, *self.call(Solver(), self.order[::-1], action))
         solves = [lambda: self.call(self.solver, self.order, action)] * (2 if action.by == "both" else 1)
         if action.by == "child":
             solves.append(lambda: self.same(new, self.call(self.solver, self.order, action)))
