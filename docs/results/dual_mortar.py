@@ -412,7 +412,7 @@ def picture(program, file):
     figure, axes = pyplot.subplots(figsize=(6.5, 3.4))
     s = numpy.linspace(-1, 1, 400)
     axes.plot(s, numpy.sqrt(1 - s**2), "k", lw=1, label="exact")
-    for side, marker, color, text in (("fine", "x", "C3", "one side"), ("dual coarse", "o", "C0", "dual weights")):
+    for side, marker, color, text in (("fine", "x", "C3", "node to facet"), ("dual coarse", "o", "C0", "dual weights")):
         profile = {}
         hertz(program, side, profile=profile)
         for body, values in profile.items():
