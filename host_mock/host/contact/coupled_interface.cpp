@@ -41,10 +41,7 @@ const ilaw_contacts& CoupledInterface::open(const StepView& step) {
     contacts.vector(contacts.normal, contact) = point.normal;
     contacts.vector(contacts.impulse, contact).setZero();
     contacts.status[k] = ILAW_FREE;
-    // Where edge rows go over a border, rows of the faces carry what is left of them.
-    if (point.is_beyond_border && setup.edges_of.empty() &&
-        setup.counterpart->is_held(contacts.node_index[k]))
-      ++interface_.sums_.left;
+    if (point.is_beyond_border && setup.counterpart->is_held(contacts.node_index[k])) ++interface_.sums_.left;
     if (point.area > 0.0 && !contacts.area.empty()) contacts.area[k] = setup.area_factor * point.area;
     if (!point.partners.empty()) {
       contacts.point[k] = point;
