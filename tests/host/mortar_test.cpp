@@ -155,7 +155,7 @@ TEST(EdgeRows, HaveTheValueOfTheClosestSecondaryNode) {
   };
   json law = with_friction(0);
   std::vector<double> values;
-  for (int k = 0; k < 36; ++k) values.push_back(friction_at(0.2 * (k % 6), 0.2 * (k / 6)));
+  for (int k = 0; k < 36; ++k) values.push_back(friction_at(0.2 * (k / 6), 0.2 * (k % 6)));
   law["parameters"]["friction"] = {{"per_node", values}};
   const Scene scene = of_two_blocks(law);
   const Interface& edges = *scene.interfaces.at(1);
