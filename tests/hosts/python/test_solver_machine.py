@@ -2,8 +2,9 @@
 starts, steps that are repeated, refusals, other threads, processes, ranks and problems.
 
 A solver keeps its memory and none of the numbers in it. So each solve must have the bits of a new solver, with the
-contacts in another order as well, unless they have the same bodies; and the laws alone, asked at the velocities that came out, must answer with the
-impulses. A sequence that fails is shortened. ILAW_SOLVER_SEED draws others, ILAW_SOLVER_SEQUENCES more of them.
+contacts in another order as well, unless they have the same bodies; and the laws alone, asked at the velocities that
+came out, must answer with the impulses. A sequence that fails is shortened. ILAW_SOLVER_SEED draws others,
+ILAW_SOLVER_SEQUENCES more of them.
 """
 import os
 import pathlib
