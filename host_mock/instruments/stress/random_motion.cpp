@@ -165,7 +165,7 @@ json join_block(json& scene, Draw& draw) {
     const int layer = (n + 1) * (n + 1);
     nodes = numbers(0, layer);
     against = {{"nodes", numbers(layer * (n + 1) + layer * height, layer)}, {"normal", {0.0, 0.0, 1.0}}};
-  } else if (draw.chance(0.3)) {
+  } else if (height == 1) {  // a third of them
     against["discretization"] = "node_to_facet";
   }
   scene["model"]["blocks"].push_back(lower);
