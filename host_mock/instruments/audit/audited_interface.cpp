@@ -22,7 +22,7 @@ namespace {
 struct Bounds {
   double law, jump, closing;
 };
-constexpr Bounds alone{1e-13, 1e-13, 0.0}, shared{1e-8, 1e-9, 1e-10};
+constexpr Bounds alone{1e-13, 1e-13, 0.0}, shared{1e-9, 2e-10, 1e-10};
 constexpr double energy_bound = 1e-7;
 constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
 
