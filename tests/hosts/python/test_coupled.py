@@ -1,4 +1,4 @@
-"""Contacts that share bodies: closed forms, a stack, ties, no copies, ranks as threads, refusals."""
+"""Contacts that share bodies: closed forms, ties, no copies, ranks as threads, refusals. Random problems: test_solver_machine.py."""
 import copy
 import gc
 import weakref
@@ -27,21 +27,17 @@ def stack(count):
     return v, np.arange(count), np.arange(count) - 1
 
 
-def test_a_stack_stays_at_rest():
-    v, body, counterpart = stack(10)
-    m = np.random.default_rng(3).uniform(0.5, 2.0, 10)
-    bodies = Bodies(v_free=v, inverse_mass=1 / m, v_previous=np.zeros((10, 3)), velocity=v, impulse=True)
-    contacts = Contacts(law(), body=body, counterpart=counterpart, gap=0.0, normal=UP, energy=True)
-    contacts.initialise()
-    report = Solver().solve(bodies, [contacts], time=H, most_sweeps=20000, tolerance=1e-14)
-    weights = np.cumsum((m * G * H)[::-1])[::-1]
-    np.testing.assert_allclose(contacts.impulse[:, 2], weights, rtol=1e-11)
-    assert np.abs(v).max() < 1e-12 * G * H * m.sum()
-    np.testing.assert_allclose(bodies.impulse[:, 2], m * G * H, rtol=1e-9)
-    assert report.residual <= 1e-14 and set(contacts.status) == {ilaw.Status.STICK}
-    # The warm start: what was found is found again at once.
-    v[:] = [0, 0, -G * H]
-    assert Solver().solve(bodies, [contacts], time=2 * H, tolerance=1e-12).sweeps <= 2
+def test_weights_may_be_matrices():
+    """A node with axes of its own, which a contact sees turned and stretched: it slides frictionless and closes its gap."""
+    axes = np.array([[0.0, -2.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.5, 3.0]])
+    v = np.array([[0.4, -0.3, -0.2]])
+    bodies = Bodies(v_free=v, v_previous=np.zeros((1, 3)), inverse_mass=0.5)
+    contact = Contacts(law("contact", delassus="full"), body=[0], counterpart=[-1], gap=0.0, normal=UP,
+                       body_weight=axes[None, None])  # fmt: skip
+    Solver().solve(bodies, [contact], time=H, tolerance=1e-14)
+    (r,), along = contact.impulse, axes[2]
+    np.testing.assert_allclose(r, [0, 0, -along @ v[0] / (0.5 * along @ along)], atol=1e-15)
+    np.testing.assert_allclose(bodies.velocity[0], v[0] + 0.5 * along * r[2], atol=1e-15)
 
 
 def test_six_values_of_inertia_turn_with_the_host():
