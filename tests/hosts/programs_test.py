@@ -258,8 +258,8 @@ class Minimal(unittest.TestCase):
 HOSTS = ROOT / "tests/hosts"
 MINIMAL = ROOT / "host_mock/minimal"
 SOURCES = {"c": [MINIMAL / "blocks.c", MINIMAL / "grains.c", ROOT / "tests/device/points.c"],
-           "cpp": [HOSTS / "blocks.cpp", HOSTS / "schemes_test.cpp", MINIMAL / "minimal.cpp"],
-           "fortran": [HOSTS / "blocks.f90"], "python": [HOSTS / "python/blocks.py"]}  # fmt: skip
+           "cpp": [HOSTS / "blocks.cpp", MINIMAL / "minimal.cpp"],
+           "fortran": [HOSTS / "blocks.f90"], "python": [HOSTS / "python/blocks.py", HOSTS / "python/test_schemes.py"]}  # fmt: skip
 # A reader who copies the excerpts of one language leaves out no call that every host must make.
 CALLS = {"c": ["ilaw_library_open(", "ilaw_interface_create(", "ilaw_interface_info(", "ilaw_interface_initialise(",
                "ilaw_interface_evaluate(", "ilaw_interface_destroy("],
