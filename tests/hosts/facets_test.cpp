@@ -1,5 +1,5 @@
-// The closest facets of points (ilaw/search.h): against all facets one by one, and how many of them are
-// looked at.
+// The closest facets of points (ilaw/search.h): lists of points, how many facets are looked at, segments,
+// overlaps and calls. python/test_search.py has which facet is found.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/random.hpp"
 
@@ -44,9 +44,7 @@ using ilaw::testing::Random;
 using Point = std::array<double, 3>;
 
 Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Point operator-(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Point operator*(double s, const Point& a) { return {s * a[0], s * a[1], s * a[2]}; }
-double norm(const Point& a) { return std::hypot(a[0], a[1], a[2]); }
 
 struct Pairs {
   std::vector<std::int32_t> facet, place;
@@ -122,13 +120,6 @@ class Searched {
     EXPECT_EQ(ilaw_facets_count(search.get(), &counts), ILAW_OK);
     return counts;
   }
-  // The point of a facet with some weights.
-  Point on(std::int32_t facet, const double* weights) const {
-    Point sum{};
-    for (std::size_t k = 0; k < 4; ++k)
-      sum = sum + weights[k] * now[static_cast<std::size_t>(facets[static_cast<std::size_t>(facet)][k])];
-    return sum;
-  }
 
  private:
   struct Destroy {
@@ -185,166 +176,6 @@ Searched wavy(Random& draw, int points, double height, double wave = 0.5) {
 
 void shake(Searched& all, Random& draw, double size) {
   for (Point& x : all.now) x = x + size * Point{draw(-1.0, 1.0), draw(-1.0, 1.0), draw(-1.0, 1.0)};
-}
-
-// ---- which facet ----------------------------------------------------------------------------------------
-
-// A search over one facet looks for nothing.
-TEST(Facets, AreTheClosestOfAll) {
-  Random draw(31);
-  Searched all = wavy(draw, 40, 3.0);
-  std::vector<Searched> one(all.facets.size());
-  for (std::size_t f = 0; f < one.size(); ++f) {
-    one[f].start = all.start;
-    one[f].points = all.points;
-    one[f].facets = {all.facets[f]};
-    one[f].open();
-  }
-  int beside = 0, over = 0;
-  for (int step = 0; step < 60; ++step) {
-    if (step % 10 == 9) shake(all, draw, 0.3);
-    for (const std::int32_t point : all.points)  // the facets stay, and the points go from one to the next
-      all.now[static_cast<std::size_t>(point)][step < 30 ? 0 : 1] += step % 20 < 10 ? 0.15 : -0.15;
-    all.update();
-    const Pairs found = all.all();
-    std::vector<std::int32_t> best(all.points.size());
-    std::vector<double> least(all.points.size(), 1e300);
-    std::vector<std::array<double, 4>> weights(all.points.size());
-    for (std::size_t f = 0; f < one.size(); ++f) {
-      one[f].now = all.now;
-      one[f].update();
-      const Pairs alone = one[f].all();
-      for (std::size_t k = 0; k < best.size(); ++k) {
-        const double* const w = &alone.weights[4 * k];
-        const Point x = all.now[static_cast<std::size_t>(all.points[k])];
-        const double distance = norm(x - all.on(static_cast<std::int32_t>(f), w));
-        if (!(distance < least[k])) continue;
-        least[k] = distance;
-        best[k] = static_cast<std::int32_t>(f);
-        weights[k] = {w[0], w[1], w[2], w[3]};
-      }
-    }
-    for (std::size_t k = 0; k < best.size(); ++k) {
-      const Point x = all.now[static_cast<std::size_t>(all.points[k])];
-      EXPECT_NEAR(norm(x - all.on(found.facet[k], &found.weights[4 * k])), least[k], 1e-14);
-      (found.place[k] == ILAW_PLACE_OVER ? over : beside) += 1;
-      if (found.facet[k] != best[k]) continue;  // at an edge, by rounding
-      for (std::size_t c = 0; c < 4; ++c) EXPECT_EQ(found.weights[4 * k + c], weights[k][c]);
-    }
-  }
-  EXPECT_GT(over, 300);
-  EXPECT_GT(beside, 300);
-}
-
-// No other point of the surface is closer, by points of all facets. Of a facet that is not flat a point far
-// from it may get another one where the distance is stationary.
-TEST(Facets, HaveNoCloserPoint) {
-  Random draw(32);
-  Searched all = wavy(draw, 100, 1.0);
-  const Pairs found = all.all();
-  int close = 0;
-  for (std::size_t k = 0; k < all.points.size(); ++k) {
-    const Point x = all.now[static_cast<std::size_t>(all.points[k])];
-    const double distance = norm(x - all.on(found.facet[k], &found.weights[4 * k]));
-    if (distance > 0.7) continue;
-    ++close;
-    EXPECT_NEAR(norm({found.normal[3 * k], found.normal[3 * k + 1], found.normal[3 * k + 2]}), 1.0, 1e-14);
-    for (std::size_t f = 0; f < all.facets.size(); ++f)
-      for (int i = 0; i <= 20; ++i)
-        for (int j = 0; j <= 20; ++j) {
-          const double a = i / 20.0, b = j / 20.0;
-          const double w[4] = {(1 - a) * (1 - b), a * (1 - b), a * b, (1 - a) * b};
-          EXPECT_GE(norm(x - all.on(static_cast<std::int32_t>(f), w)), distance * (1.0 - 1e-9));
-        }
-  }
-  EXPECT_GT(close, 30);
-}
-
-// Above an edge or a corner, the first of the facets that meet there, whatever was found before.
-TEST(Facets, AreTheFirstOfEqualOnes) {
-  Searched all = plates(4, 0.25, 0.0);
-  for (const double dx : {0.3, -0.3, 0.0}) {
-    for (const std::int32_t point : all.points)
-      all.now[static_cast<std::size_t>(point)][0] = all.start[static_cast<std::size_t>(point)][0] + dx;
-    all.update();
-    (void)all.all();
-  }
-  const Pairs found = all.all();
-  for (std::size_t k = 0; k < all.points.size(); ++k) {
-    const int i = std::max(static_cast<int>(k) % 5 - 1, 0), j = std::max(static_cast<int>(k) / 5 - 1, 0);
-    EXPECT_EQ(found.facet[k], 4 * j + i) << k;
-    EXPECT_EQ(found.gap[k], 0.25);
-  }
-}
-
-// Over a grid the height of the surface is bilinear, which says on which side of it a point is: also behind
-// a fold, where a whole wedge of points has the edge for its closest place, and over sharp ridges.
-TEST(Facets, TellTheSideOfAPoint) {
-  Random draw(35);
-  const auto n = 6;
-  for (const double wave : {1e-3, 0.1, 0.5, 1.0}) {
-    std::vector<double> height;
-    for (int k = 0; k < (n + 1) * (n + 1); ++k) height.push_back(wave * draw(-1.0, 1.0));
-    const auto at = [&](int i, int j) { return height[static_cast<std::size_t>(j * (n + 1) + i)]; };
-    Searched all = face(n, false, [&](int i, int j) { return Point{double(i), double(j), at(i, j)}; });
-    std::vector<double> above;
-    for (int k = 0; k < 3000; ++k) {
-      const int i = static_cast<int>(draw(1.0, n - 1.0)), j = static_cast<int>(draw(1.0, n - 1.0));
-      const double x = k % 3 == 0 ? 0.0 : draw(0.0, 1.0), y = k % 2 == 0 ? 0.0 : draw(0.0, 1.0);
-      above.push_back(draw(-0.3, 0.3));
-      add_point(all, {i + x, j + y,
-                      above.back() + (1 - x) * (1 - y) * at(i, j) + x * (1 - y) * at(i + 1, j) +
-                          x * y * at(i + 1, j + 1) + (1 - x) * y * at(i, j + 1)});
-    }
-    all.open();
-    const Pairs found = all.all();
-    int behind_edges = 0;
-    for (std::size_t k = 0; k < above.size(); ++k) {
-      if (found.place[k] == ILAW_PLACE_BEYOND) continue;
-      EXPECT_EQ(found.gap[k] < 0.0, above[k] < 0.0)
-          << "wave " << wave << ", " << above[k] << " above: " << found.gap[k];
-      const double* const w = &found.weights[4 * k];
-      behind_edges += above[k] < 0.0 && *std::min_element(w, w + 4) == 0.0 ? 1 : 0;
-    }
-    EXPECT_GT(behind_edges, 100) << wave;
-  }
-}
-
-// ---- borders, and far from the origin -------------------------------------------------------------------
-
-TEST(Facets, GoOnByTheRim) {
-  Searched all = face(3, false, [](int i, int j) { return Point{double(i), double(j), 0.0}; });
-  for (const double x : {3.0, 3.05, 3.2}) add_point(all, {x, 1.5, -0.05});
-  all.rim = 0.1;
-  all.open();
-  const Pairs found = all.all();
-  EXPECT_EQ(found.place, (std::vector<std::int32_t>{ILAW_PLACE_OVER, ILAW_PLACE_OVER, ILAW_PLACE_BEYOND}));
-  EXPECT_EQ(found.gap[1], -0.05);
-  EXPECT_NEAR(found.gap[2], std::hypot(0.2, 0.05), 1e-15);
-  EXPECT_EQ(found.approach[0], 0.0);
-  EXPECT_NEAR(found.approach[2], 0.1, 1e-15);
-}
-
-// A tilted plate, whose coordinates are rounded wherever it is; points below it must be seen below it.
-TEST(Facets, AreMetFarFromTheOrigin) {
-  Random draw(33);
-  for (double off = 1.0; off < 2e10; off *= 10.0) {
-    const Point far{off, -0.7 * off, 0.4 * off}, a{0.8, 0.36, 0.48}, b{0.0, 0.8, -0.6}, n{-0.6, 0.48, 0.64};
-    Searched all = face(5, false, [&](int i, int j) {
-      return far + static_cast<double>(i) * a + static_cast<double>(j) * b;
-    });
-    std::vector<double> depth;
-    for (int k = 0; k < 200; ++k) {
-      depth.push_back(draw(-0.2, 0.2));
-      add_point(all, far + draw(0.1, 4.9) * a + draw(0.1, 4.9) * b + depth.back() * n);
-    }
-    all.open();
-    const Pairs found = all.all();
-    for (std::size_t k = 0; k < depth.size(); ++k) {
-      EXPECT_EQ(found.place[k], ILAW_PLACE_OVER) << off;
-      EXPECT_NEAR(found.gap[k], depth[k], 1e-14 + 8e-16 * off) << off;
-    }
-  }
 }
 
 // ---- lists ----------------------------------------------------------------------------------------------
