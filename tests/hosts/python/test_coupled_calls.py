@@ -106,7 +106,8 @@ OF_BODIES = [
     ("spin_free is missing", {"bodies.spin_free": None}),
     ("spin_previous is missing", {"bodies.spin_previous": None}),
     ("threads is above 256", {"options.threads": 4294967295}),
-    *((f"{name} is below 0 or not finite", {f"options.{name}": x}) for name in ("tolerance", "speed", "rounding") for x in BAD),
+    *((f"{path[8:]} is below 0 or not finite", {path: x})
+      for path in ("options.tolerance", "options.speed", "options.rounding") for x in BAD),
     *((f"an {name} of bodies is below 0 or not finite", {f"bodies.{name}": at(BAD, first=k)})
       for name in ("inverse_mass", "inverse_inertia") for k in range(3)),
 ]  # fmt: skip
@@ -256,6 +257,7 @@ def test_a_stable_step_that_makes_no_sense_is_refused(step):
 def test_an_exchange_that_makes_no_sense_is_refused():
     scene = cube()
     call, given = Call(*scene), sized(_coupled_abi.exchange)
+    given.sum_bodies = _coupled_abi.sum_bodies_function(lambda *_: None)  # the others are missing
     call.options.exchange = ctypes.pointer(given)
     expect_refused(call, -1, "a function of the exchange is null", outputs_of(*scene))
 
