@@ -287,7 +287,8 @@ class Pages(unittest.TestCase):
     def test_of_the_abi_name_every_enumerator_struct_and_function(self):
         """Members are in the header, each with its comment."""
         page = (ROOT / "docs/abi.md").read_text()
-        for header, pattern, least in (("ilaw", r"(ILAW_[A-Z0-9_]+) = [-(0-9]", 54), ("ilaw", r"typedef struct (ilaw_\w+)", 12),
+        for header, pattern, least in (("ilaw", r"(ILAW_[A-Z0-9_]+) = [-(0-9]", 54),
+                                       ("ilaw", r"typedef struct (ilaw_\w+)", 12),
                                        ("loader", r"\n[a-z][^\n(]*?(ilaw_\w+)\(", 12)):  # fmt: skip
             names = set(re.findall(pattern, (ROOT / f"api/include/ilaw/{header}.h").read_text()))
             self.assertGreaterEqual(len(names), least)

@@ -50,7 +50,8 @@ def cases():
     found.append(Case(
         "slides, then rolls", "friction brakes it and turns it until it rolls, from 2 u/(7 mu g) on with 5/7 u",
         "coulomb", {"friction": mu}, [Sphere((0, 0, LIES), (u, 0, 0))],
-        [(0.9 * rolls, lambda t, h: (row(NEVER, 0, LIES, u - mu * GRAVITY * t, 0, 0, 0, 2.5 * mu * GRAVITY * t / RADIUS, 0), 1e-9)),
+        [(0.9 * rolls, lambda t, h: (
+            row(NEVER, 0, LIES, u - mu * GRAVITY * t, 0, 0, 0, 2.5 * mu * GRAVITY * t / RADIUS, 0), 1e-9)),
          (1.1 * rolls, lambda t, h: (row(NEVER, 0, LIES, 5 / 7 * u, 0, 0, 0, 5 / 7 * u / RADIUS, 0), 1e-7))]))
     stops = INERTIA * 15 / (TAU * MASS * GRAVITY)
     found.append(Case(
@@ -69,8 +70,8 @@ def cases():
         return np.array([[*one.x, *still, *(np.array(one.w) / spin * left[k // 2])] for k, one in enumerate(pair)]), 1e-9
 
     found.append(Case(
-        "pressed pairs", "a moment of rho F or tau F acts on both spheres of a pair, and takes all of their energy", "rolling",
-        RESISTING, pair, [(half, pressed), (end, pressed)], floor=False, lost=4 * 0.5 * INERTIA * spin**2))
+        "pressed pairs", "a moment of rho F or tau F acts on both spheres of a pair, and takes all of their energy",
+        "rolling", RESISTING, pair, [(half, pressed), (end, pressed)], floor=False, lost=4 * 0.5 * INERTIA * spin**2))
     turns, out = 7.0, 0.5
 
     def circle(t, h):

@@ -77,7 +77,8 @@ class Layers(unittest.TestCase):
         self.assertEqual(said, [])
 
     def test_every_folder_of_the_host_is_a_floor(self):
-        folders = {f"{room}/{folder.name}" for room in ("host", "instruments") for folder in (ROOT / "host_mock" / room).iterdir()}
+        folders = {f"{room}/{folder.name}" for room in ("host", "instruments")
+                   for folder in (ROOT / "host_mock" / room).iterdir()}  # fmt: skip
         self.assertEqual(folders - set(FLOORS), set())
 
     def test_rooms_of_the_kit_are_built_on_each_other(self):

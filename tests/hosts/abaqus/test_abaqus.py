@@ -27,12 +27,14 @@ class Points:
         """A step; what VFRIC reported as an error."""
         self.time += self.dt
         numbers, whole = ctypes.c_double, ctypes.c_int
-        arrays = {name: ctypes.c_void_p(array.ctypes.data) for name, array in vars(self).items() if isinstance(array, np.ndarray)}
+        arrays = {name: ctypes.c_void_p(array.ctypes.data) for name, array in vars(self).items()
+                  if isinstance(array, np.ndarray)}  # fmt: skip
         mass, pressing = np.full(4, MASS), np.full(4, PRESSURE)
         STUB.stub_increment(
-            self.interaction, whole(len(self.interaction)), whole(self.v.shape[1]), whole(4), numbers(self.time), numbers(self.dt),
-            ctypes.c_void_p(mass.ctypes.data), arrays["load"], ctypes.c_void_p(pressing.ctypes.data), arrays["normal"],
-            arrays["v"], whole(len(self.constants)), arrays["constants"], whole(self.state.shape[1]), arrays["state"], arrays["f"])
+            self.interaction, whole(len(self.interaction)), whole(self.v.shape[1]), whole(4), numbers(self.time),
+            numbers(self.dt), ctypes.c_void_p(mass.ctypes.data), arrays["load"], ctypes.c_void_p(pressing.ctypes.data),
+            arrays["normal"], arrays["v"], whole(len(self.constants)), arrays["constants"], whole(self.state.shape[1]),
+            arrays["state"], arrays["f"])  # fmt: skip
         text = ctypes.create_string_buffer(513)
         STUB.stub_error(text)
         return text.value.decode()

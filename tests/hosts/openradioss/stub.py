@@ -18,7 +18,8 @@ import numpy as np
 RESTART = "restart.npz"
 STARTER = ("lecg", "lecguser", "lecm", "lecr", "lecm99", "lecsen", "riniuser", "siniusr", "get_userbuf_var")
 ENGINE = ("ruser", "sigeps", "sigepsc", "flaw", "flawc", "suser", "userint", "get_uintbuf_var", "user_sens",
-          "get_lawc_user_var", "sigeps99c", "set_lawc_user_var", "get_law_user_var", "sigeps99", "set_law_user_var")  # fmt: skip
+          "get_lawc_user_var", "sigeps99c", "set_lawc_user_var", "get_law_user_var", "sigeps99",
+          "set_law_user_var")  # fmt: skip
 ROOT = np.frombuffer(b"STUB", np.uint8)
 
 

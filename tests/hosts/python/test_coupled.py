@@ -1,4 +1,6 @@
-"""Contacts that share bodies: closed forms, ties, no copies, ranks as threads, refusals. Random problems: test_solver_machine.py."""
+"""Contacts that share bodies: closed forms, ties, no copies, ranks as threads, refusals.
+
+Random problems: test_solver_machine.py."""
 import copy
 import gc
 import weakref

@@ -132,7 +132,8 @@ OF_CONTACTS = [
     ("delassus_form is transverse, and bodies are no spheres", {"contacts.delassus_form": FORM.TRANSVERSE}),
     ("delassus_form is transverse, and the normal is missing",
      {"contacts.delassus_form": FORM.TRANSVERSE, "bodies.inverse_inertia.component_stride": 0, "batch.normal": None}),
-    ("delassus_form has spins, which the law does not serve", {"contacts.delassus_form": FORM.TRANSVERSE_SPIN, "batch.moment": 1}),
+    ("delassus_form has spins, which the law does not serve",
+     {"contacts.delassus_form": FORM.TRANSVERSE_SPIN, "batch.moment": 1}),
     *(("a weight is not finite", {"contacts.body_weight": at(BAD, first=k)}) for k in range(2)),
 ]  # fmt: skip
 SPINS = "delassus_form has spins"
@@ -143,7 +144,8 @@ OF_SPINS = [
     ("delassus_form is transverse, and bodies are no spheres", {"bodies.inverse_inertia": at(NUMBERS, 0, 1)}),
     ("delassus_form is transverse, and bodies have masses per axis", {"bodies.inverse_mass": at(NUMBERS, 0, 1)}),
 ]  # fmt: skip
-MEMBERS = {"bodies": "inverse_mass inverse_inertia v_free spin_free v_previous spin_previous velocity spin impulse angular_impulse",
+MEMBERS = {"bodies": "inverse_mass inverse_inertia v_free spin_free v_previous spin_previous velocity spin impulse "
+                     "angular_impulse",
            "contacts": "arm counterpart_arm wall_velocity wall_previous body_weight counterpart_weight wall_spin "
                        "wall_spin_previous",
            "batch": "gap gap_offset area normal tangent state_in state_out impulse moment energy"}  # fmt: skip
@@ -206,7 +208,8 @@ def test_lists_of_a_batch_are_checked():
 
 def test_bodies_that_cannot_meet_are_refused():
     bodies, contacts = cube()
-    for other, reason in ((27, "a contact names a body that is not there"), (contacts.body[-1], "a contact of a body with itself")):
+    for other, reason in ((27, "a contact names a body that is not there"),
+                          (contacts.body[-1], "a contact of a body with itself")):  # fmt: skip
         call, counterpart = Call(bodies, contacts), contacts.counterpart.copy()
         counterpart[-1] = other
         call.contacts.counterpart = counterpart.ctypes.data
@@ -278,7 +281,8 @@ def test_an_exchange_that_makes_no_sense_is_refused():
 def test_calls_of_nothing():
     bodies, contacts = cube()
     solve, call = coupled.library().ilaw_coupled_solve, Call(bodies, contacts)
-    solver, report, empty = ctypes.c_void_p(coupled.library().ilaw_coupled_create()), _coupled_abi.coupled_report(), call.options
+    solver, report = ctypes.c_void_p(coupled.library().ilaw_coupled_create()), _coupled_abi.coupled_report()
+    empty = call.options
     empty.struct_size = 0
     here = ctypes.byref(call.bodies)
     assert solve(None, here, None, 0, None, None) == INVALID

@@ -524,10 +524,11 @@ class Grains:
         keys = list(zip(body.tolist(), other.tolist()))
         impulse, moment = (np.array([keep * self.last.get(key, (0 * UP, 0 * UP))[k] for key in keys])
                            for k, keep in enumerate(self.keeps))  # fmt: skip
-        bodies = Bodies(v_free=self.v, v_previous=v_before, spin_free=self.w, spin_previous=w_before, inverse_mass=1 / self.mass,
-                        inverse_inertia=1 / self.inertia, velocity=self.v, spin=self.w)  # fmt: skip
-        contacts = Contacts(self.law, body=body, counterpart=other, gap=gap, normal=normal, arm=-self.radius[body, None] * normal,
-                            counterpart_arm=self.radius[other, None] * normal, impulse=impulse, moment=moment, energy=True)
+        bodies = Bodies(v_free=self.v, v_previous=v_before, spin_free=self.w, spin_previous=w_before, velocity=self.v,
+                        spin=self.w, inverse_mass=1 / self.mass, inverse_inertia=1 / self.inertia)  # fmt: skip
+        contacts = Contacts(self.law, body=body, counterpart=other, gap=gap, normal=normal, impulse=impulse, moment=moment,
+                            arm=-self.radius[body, None] * normal, counterpart_arm=self.radius[other, None] * normal,
+                            energy=True)  # fmt: skip
         report = self.solver.solve(bodies, [contacts], time=self.time, **self.options)
         self.last = dict(zip(keys, zip(contacts.impulse, contacts.moment)))
         self.x += self.h * self.v
