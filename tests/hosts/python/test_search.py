@@ -1,10 +1,16 @@
-"""The closest facets of points (ilaw/search.h): against all facets one by one, and closed forms. Lists, counts and calls:
+"""The closest facets of points (ilaw/search.h): against all facets one by one, and closed forms;
+lists of points near by, how many facets are looked at, overlaps, and calls by the structs of C. Allocations:
 hosts/facets_test.cpp."""
+import ctypes
+import threading
+
 import numpy as np
 import pytest
 
+from ilaw import _abi, _search_abi
+from ilaw._objects import sized
 from ilaw.errors import InvalidArgument
-from ilaw.search import Facets, Place
+from ilaw.search import Facets, Place, library
 
 
 def face(n, place, has_triangles=False):
@@ -30,11 +36,26 @@ def plate(n):
     return face(n, lambda i, j: (i, j, 0))
 
 
-def wavy(draw, count, height):
+def wavy(draw, count, height, wave=0.5):
     nodes, facets = face(6, lambda i, j: (
         i + draw.uniform(-0.2, 0.2), j + draw.uniform(-0.2, 0.2),
-        0.5 * (np.sin(1.3 * i) * np.cos(j) + draw.uniform(-0.2, 0.2))), has_triangles=True)  # fmt: skip
+        wave * (np.sin(1.3 * i) * np.cos(j) + draw.uniform(-0.2, 0.2))), has_triangles=True)  # fmt: skip
     return nodes, facets, draw.uniform([-2, -2, -0.5 * height], [8, 8, height], (count, 3))
+
+
+def plates(n, gap, aside):
+    """Two plates: the nodes of the upper one above the facets of the lower one."""
+    nodes, facets = plate(n)
+    return searched(nodes, facets, nodes + [aside, aside, gap])
+
+
+def struct_of(function, search, **given):
+    """A call by its struct: near, count."""
+    made = sized({"near": _search_abi.facets_nearby, "count": _search_abi.facets_counts}[function])
+    for name, value in given.items():
+        setattr(made, name, value)
+    assert getattr(library(), f"ilaw_facets_{function}")(search._handle, ctypes.byref(made)) == 0
+    return made
 
 
 def foot(position, facets, pairs):
@@ -189,3 +210,179 @@ def test_the_plane_has_facets_of_two_nodes():
 def test_what_is_refused_is_named(facets, points, position, reason):
     with pytest.raises(InvalidArgument, match=reason):
         Facets(facets, points, position)
+
+
+# ---- lists of points near by ----
+
+
+def test_near_leaves_nobody_out():
+    """Motions of all sizes: whoever has come within reach is in the list."""
+    draw, left_out, kept = np.random.default_rng(34), 0, 0
+    for scene in range(12):
+        nodes, facets, own = wavy(draw, 40, 1.0, 0.01)
+        above = draw.uniform([2, 2, 1.5], [4, 4, 2.5], (40, 3))
+        search, position, points = searched(nodes, facets, np.vstack([own, above]))
+        size, reach = 10 ** draw.uniform(-4, -2), 10 ** draw.uniform(-3, -0.5)
+        for step in range(60):
+            position += draw.uniform(-1, 1, 3)
+            if scene % 2 == 0:
+                position += size * draw.uniform(-1, 1, position.shape)
+            position[points, 2] += -0.05 if step < 45 else 0.04
+            search.update(position)
+            nearby, far = struct_of("near", search, reach=reach), np.ones(len(points), bool)
+            if nearby.count:
+                far[np.ctypeslib.as_array((ctypes.c_int32 * nearby.count).from_address(nearby.points))] = False
+            gap = search.pairs().gap[far]
+            assert (gap > reach).all() and (not nearby.is_new or (gap > nearby.horizon).all())
+            left_out, kept = left_out + far.sum(), kept + (not nearby.is_new)
+    assert left_out > 100 and kept > 100
+
+
+def test_a_common_motion_costs_nothing():
+    """Two plates that fly and turn together, a thousand edges far: one list serves."""
+    search, position, _ = plates(10, 0.4, 0.3)
+    search.near(0.01)
+    x, y, z = position.T.copy()
+    for step in range(1, 101):
+        c, s = np.cos(0.05 * step), np.sin(0.05 * step)
+        position[:] = np.column_stack([c * x - s * z + 10 * step, y, s * x + c * z - 3 * step])
+        search.update(position)
+        nearby = struct_of("near", search, reach=0.01)
+        assert nearby.count == 0 and nearby.slack > 0.002  # less than the distance: the plate below could turn its back
+    counts = struct_of("count", search)
+    assert (counts.updates, counts.refreshes, counts.refits, counts.facets) == (101, 1, 0, 0)
+    assert abs(counts.motion) <= 1e-9 and counts.shortest_edge > 0
+    assert struct_of("near", search, reach=0.01, forced=1).is_new == 1
+    assert struct_of("count", search).refreshes == 2
+
+
+def cost(n, gap, speed, steps=40, tremor=1e-3):
+    """Facets that are looked at per point and step."""
+    draw, (search, position, points) = np.random.default_rng(35), plates(n, gap, 0.3)
+    for _ in range(steps):
+        position[points, 0] += speed
+        search.update(position + tremor * draw.uniform(-1, 1, position.shape))
+        search.pairs(search.near(2 * (speed + 2 * tremor)))
+    return struct_of("count", search).facets / (steps * len(points))
+
+
+def test_cost_is_the_same_per_point_on_any_mesh():
+    assert cost(20, 0.4, 0.0) == cost(80, 0.4, 0.0) == cost(80, 0.4, 0.03) == 0
+    for speed in (0.0, 0.03):
+        coarse, finer, fine = (cost(n, 0.0, speed) for n in (20, 40, 80))
+        assert max(finer, fine) < 1.15 * coarse and fine < 4 and coarse > 0.9
+
+
+def test_threads_change_no_bit():
+    """The same bits and the same counts, by one thread or four."""
+    found = []
+    for threads in (1, 4):
+        draw = np.random.default_rng(37)
+        search, position, points = searched(*wavy(draw, 400, 1.0))
+        shares, parts = np.array_split(np.arange(400), threads), [None] * threads
+        for _ in range(20):
+            position += 0.02 * draw.uniform(-1, 1, position.shape)
+            search.update(position)
+            team = [threading.Thread(target=lambda t=t: parts.__setitem__(t, search.pairs(shares[t])))
+                    for t in range(threads)]  # fmt: skip
+            for one in team:
+                one.start()
+            for one in team:
+                one.join()
+        columns = [np.concatenate([getattr(part, name) for part in parts]) for name in ("facet", "gap", "normal", "weights")]
+        found.append((columns, struct_of("count", search).facets))
+    assert all(map(np.array_equal, found[0][0], found[1][0])) and found[0][1] == found[1][1]
+
+
+# ---- calls by the structs of C ----
+
+
+def test_segments_in_numbers_of_fortran_and_floats():
+    """An outline of three segments; points to the right of the way along them."""
+    position = np.array([[0, 0], [-1, 0], [-2, 0], [-2, -1], [-0.5, 0.25], [-1, 0.5], [-2.25, 0.25], [0.5, 0],
+                         [-0.5, -0.125]], np.float32)  # fmt: skip
+    facets, points = np.array([[1, 2], [2, 3], [3, 4]], np.int32), np.arange(5, 10, dtype=np.int32)
+    setup, given, asked = (sized(getattr(_search_abi, name)) for name in ("facets_setup", "facets_positions", "facets_pairs_of"))
+    setup.dimension = setup.corner_count = 2
+    setup.index_base, setup.node_count, setup.facet_count, setup.point_count = 1, 9, 3, 5
+    setup.facets, setup.points = facets.ctypes.data, points.ctypes.data
+    setup.position = given.position = _abi.input(None, position.ctypes.data, 2, 1)
+    search = ctypes.c_void_p()
+    assert library().ilaw_facets_create(ctypes.byref(setup), ctypes.byref(search)) == 0
+    assert library().ilaw_facets_update(search, ctypes.byref(given)) == 0
+    (facet, place), (gap, approach), (normal, weights) = np.empty((2, 5), np.int32), np.empty((2, 5)), np.empty((2, 5, 2))
+    asked.count, asked.facet, asked.place = 5, facet.ctypes.data, place.ctypes.data
+    for name, array, stride in (("gap", gap, 1), ("approach", approach, 1), ("normal", normal, 2), ("weights", weights, 2)):
+        setattr(asked, name, _abi.output(array.ctypes.data, None, stride, 1))
+    assert library().ilaw_facets_pairs(search, ctypes.byref(asked)) == 0
+    library().ilaw_facets_destroy(search)
+    assert facet.tolist() == [0, 0, 1, 0, 0]
+    assert place.tolist() == [Place.OVER, Place.OVER, Place.BESIDE, Place.BEYOND, Place.OVER]
+    assert gap.tolist() == [0.25, 0.5, np.hypot(0.25, 0.25), 0.5, -0.125]
+    assert approach == pytest.approx([0.25, 0.5, np.hypot(0.25, 0.25), 0.5, 0.0], abs=2e-6)  # 0: behind
+    assert weights.tolist() == [[0.5, 0.5], [0, 1], [0, 1], [1, 0], [0.5, 0.5]]
+    assert normal.tolist() == [[0, 1]] * 5
+
+
+def test_facets_that_a_face_overlaps_are_found():
+    """Faces of four points each, while the points sink through the facets and slide over them: no facet whose corners come
+    close is missing, and few others are there."""
+    search, position, points = plates(12, 0.3, 0.0)
+    faces = np.ascontiguousarray(plate(12)[1], np.int32)
+    first, found, asked = np.zeros(len(faces) + 1, np.int64), np.zeros(1, np.int32), sized(_search_abi.facets_overlaps_of)
+    asked.corner_count, asked.count, asked.points, asked.distance = 4, len(faces), faces.ctypes.data, 0.05
+    asked.first = first.ctypes.data
+
+    def ask():
+        asked.capacity, asked.facets = len(found), found.ctypes.data
+        return library().ilaw_facets_overlaps(search._handle, ctypes.byref(asked))
+
+    for _ in range(20):
+        position[points] += [0.013, 0.007, -0.03]
+        search.update(position)
+        assert ask() == 0
+        found = np.zeros(max(len(found), first[-1]), np.int32)
+        assert ask() == 0 and first[-1] <= len(found)
+        upper, lower = position[points[faces]], position[plate(12)[1]]
+        apart = np.maximum(0, np.maximum(upper.min(1)[:, None] - lower.max(1), lower.min(1) - upper.max(1)[:, None]))
+        close = (apart**2).sum(-1) <= 0.05**2
+        for k, near in enumerate(close):
+            assert set(np.flatnonzero(near)) <= set(found[first[k] : first[k + 1]])
+        assert first[-1] <= 3 * close.sum() + 20  # boxes lie along the axes of the surface
+    asked.capacity = -1
+    assert library().ilaw_facets_overlaps(search._handle, ctypes.byref(asked)) == _abi.Code.INVALID_ARGUMENT
+    faces[0, 0] = len(points)
+    assert ask() == _abi.Code.INVALID_ARGUMENT
+
+
+@pytest.mark.parametrize("wrong", [
+    dict(struct_size=8), dict(dimension=1), dict(dimension=2), dict(corner_count=5), dict(facet_count=0), dict(facets=None),
+    dict(index_base=1), dict(node_count=17), dict(point_count=-1), dict(position=_abi.input())])  # fmt: skip
+def test_a_wrong_setup_is_refused(wrong):
+    nodes, facets = plate(2)
+    position, facets, points = np.vstack([nodes, nodes]), facets.astype(np.int32), np.arange(9, 18, dtype=np.int32)
+
+    def create(**changed):
+        setup, made = sized(_search_abi.facets_setup), ctypes.c_void_p(1)
+        given = dict(dimension=3, corner_count=4, node_count=18, facet_count=4, facets=facets.ctypes.data, point_count=9,
+                     points=points.ctypes.data, position=_abi.input(position.ctypes.data, None, 3, 1))  # fmt: skip
+        for name, value in (given | changed).items():
+            setattr(setup, name, value)
+        code = library().ilaw_facets_create(ctypes.byref(setup), ctypes.byref(made))
+        if code == 0:
+            library().ilaw_facets_destroy(made)
+        return code, made.value
+
+    assert create()[0] == 0
+    assert create(**wrong) == (_abi.Code.INVALID_ARGUMENT, None)
+
+
+def test_wrong_calls_of_a_search_are_refused():
+    search, _, points = plates(2, 0.0, 0.0)
+    outside, nearby, asked = np.array([len(points)], np.int32), sized(_search_abi.facets_nearby), sized(_search_abi.facets_pairs_of)
+    nearby.reach, asked.count, asked.points = np.nan, 1, outside.ctypes.data
+    invalid = _abi.Code.INVALID_ARGUMENT
+    assert library().ilaw_facets_create(ctypes.byref(sized(_search_abi.facets_setup)), None) == invalid
+    assert library().ilaw_facets_update(search._handle, None) == invalid
+    assert library().ilaw_facets_near(search._handle, ctypes.byref(nearby)) == invalid
+    assert library().ilaw_facets_pairs(search._handle, ctypes.byref(asked)) == invalid
