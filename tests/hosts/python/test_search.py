@@ -49,13 +49,17 @@ def plates(n, gap, aside):
     return searched(nodes, facets, nodes + [aside, aside, gap])
 
 
-def struct_of(function, search, **given):
-    """A call by its struct: near, count."""
-    made = sized({"near": _search_abi.facets_nearby, "count": _search_abi.facets_counts}[function])
-    for name, value in given.items():
-        setattr(made, name, value)
-    assert getattr(library(), f"ilaw_facets_{function}")(search._handle, ctypes.byref(made)) == 0
-    return made
+def near_of(search, reach, forced=0):
+    found = sized(_search_abi.facets_nearby)
+    found.reach, found.forced = reach, forced
+    assert library().ilaw_facets_near(search._handle, ctypes.byref(found)) == 0
+    return found
+
+
+def counts_of(search):
+    found = sized(_search_abi.facets_counts)
+    assert library().ilaw_facets_count(search._handle, ctypes.byref(found)) == 0
+    return found
 
 
 def foot(position, facets, pairs):
@@ -229,7 +233,7 @@ def test_near_leaves_nobody_out():
                 position += size * draw.uniform(-1, 1, position.shape)
             position[points, 2] += -0.05 if step < 45 else 0.04
             search.update(position)
-            nearby, far = struct_of("near", search, reach=reach), np.ones(len(points), bool)
+            nearby, far = near_of(search, reach), np.ones(len(points), bool)
             if nearby.count:
                 far[np.ctypeslib.as_array((ctypes.c_int32 * nearby.count).from_address(nearby.points))] = False
             gap = search.pairs().gap[far]
@@ -247,13 +251,13 @@ def test_a_common_motion_costs_nothing():
         c, s = np.cos(0.05 * step), np.sin(0.05 * step)
         position[:] = np.column_stack([c * x - s * z + 10 * step, y, s * x + c * z - 3 * step])
         search.update(position)
-        nearby = struct_of("near", search, reach=0.01)
+        nearby = near_of(search, 0.01)
         assert nearby.count == 0 and nearby.slack > 0.002  # less than the distance: the plate below could turn its back
-    counts = struct_of("count", search)
+    counts = counts_of(search)
     assert (counts.updates, counts.refreshes, counts.refits, counts.facets) == (101, 1, 0, 0)
     assert abs(counts.motion) <= 1e-9 and counts.shortest_edge > 0
-    assert struct_of("near", search, reach=0.01, forced=1).is_new == 1
-    assert struct_of("count", search).refreshes == 2
+    assert near_of(search, 0.01, forced=1).is_new == 1
+    assert counts_of(search).refreshes == 2
 
 
 def cost(n, gap, speed, steps=40, tremor=1e-3):
@@ -263,7 +267,7 @@ def cost(n, gap, speed, steps=40, tremor=1e-3):
         position[points, 0] += speed
         search.update(position + tremor * draw.uniform(-1, 1, position.shape))
         search.pairs(search.near(2 * (speed + 2 * tremor)))
-    return struct_of("count", search).facets / (steps * len(points))
+    return counts_of(search).facets / (steps * len(points))
 
 
 def test_cost_is_the_same_per_point_on_any_mesh():
@@ -290,7 +294,7 @@ def test_threads_change_no_bit():
             for one in team:
                 one.join()
         columns = [np.concatenate([getattr(part, name) for part in parts]) for name in ("facet", "gap", "normal", "weights")]
-        found.append((columns, struct_of("count", search).facets))
+        found.append((columns, counts_of(search).facets))
     assert all(map(np.array_equal, found[0][0], found[1][0])) and found[0][1] == found[1][1]
 
 
@@ -302,7 +306,9 @@ def test_segments_in_numbers_of_fortran_and_floats():
     position = np.array([[0, 0], [-1, 0], [-2, 0], [-2, -1], [-0.5, 0.25], [-1, 0.5], [-2.25, 0.25], [0.5, 0],
                          [-0.5, -0.125]], np.float32)  # fmt: skip
     facets, points = np.array([[1, 2], [2, 3], [3, 4]], np.int32), np.arange(5, 10, dtype=np.int32)
-    setup, given, asked = (sized(getattr(_search_abi, name)) for name in ("facets_setup", "facets_positions", "facets_pairs_of"))
+    setup, given = sized(_search_abi.facets_setup), sized(_search_abi.facets_positions)
+    asked, no_rim = sized(_search_abi.facets_pairs_of), np.zeros(1)
+    asked.rim = _abi.input(no_rim.ctypes.data, None, 0, 0)
     setup.dimension = setup.corner_count = 2
     setup.index_base, setup.node_count, setup.facet_count, setup.point_count = 1, 9, 3, 5
     setup.facets, setup.points = facets.ctypes.data, points.ctypes.data
@@ -379,7 +385,8 @@ def test_a_wrong_setup_is_refused(wrong):
 
 def test_wrong_calls_of_a_search_are_refused():
     search, _, points = plates(2, 0.0, 0.0)
-    outside, nearby, asked = np.array([len(points)], np.int32), sized(_search_abi.facets_nearby), sized(_search_abi.facets_pairs_of)
+    nearby, asked = sized(_search_abi.facets_nearby), sized(_search_abi.facets_pairs_of)
+    outside = np.array([len(points)], np.int32)
     nearby.reach, asked.count, asked.points = np.nan, 1, outside.ctypes.data
     invalid = _abi.Code.INVALID_ARGUMENT
     assert library().ilaw_facets_create(ctypes.byref(sized(_search_abi.facets_setup)), None) == invalid
