@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # An ilaw as users get it, by `cmake --install`, from the archive and from the Debian packages: an outside project
-# builds hosts against it, and they run. Laws are built by first_law_test, against what cmake --install leaves: the
+# builds hosts against it, and they run. Laws are built by kit.first_law, against what cmake --install leaves: the
 # other two ways must bring the same files. Packages are also installed and removed by dpkg (clean_root.sh).
 # Usage: install.sh BUILD SOURCE C_COMPILER CXX_COMPILER install|archive|packages
 set -euo pipefail
