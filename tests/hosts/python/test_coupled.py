@@ -77,18 +77,6 @@ def test_a_wall_that_spins_takes_the_ball_with_it():
     assert report.energy[0] == pytest.approx(moment * mean_slip, rel=1e-12)
 
 
-def test_two_laws_at_one_body_and_a_wall_that_moves():
-    """A weight between a floor that lifts it and a tie at its side."""
-    v = np.array([[0.5, 0.0, -1.0], [0.0, 0.0, 0.0]])
-    bodies = Bodies(v_free=v, inverse_mass=np.array([1.0, 0.5]), v_previous=np.zeros((2, 3)))
-    floor = Contacts(law("contact"), body=[0], counterpart=[-1], gap=0.0, normal=UP, wall_velocity=[0, 0, 0.25])
-    tied = Contacts(law("tie"), body=[1], counterpart=[0], normal=[1.0, 0.0, 0.0], area=1.0, gap=0.0)
-    for group in (floor, tied):
-        group.initialise()
-    Solver().solve(bodies, [floor, tied], time=H, tolerance=1e-14)
-    np.testing.assert_allclose(bodies.velocity, [[0.5 / 3, 0, 0.25]] * 2, atol=1e-12)
-
-
 def test_arrays_are_used_where_they_are():
     """Columns and sections go in as they are, results come out in place, and arrays live as long as they are used."""
     room = np.zeros((5, 8))
