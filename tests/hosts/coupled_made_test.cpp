@@ -176,7 +176,7 @@ TEST_P(MadeOf, IsSolvedInTheScaleOfItsInput) {
       "%-16s %6d problems: wrong %d (%.1e), momentum %d, work %d, opposed %d, unsolved %d; %.1f iterations, %.2f s\n",
       kind.name.c_str(), counts.problems, counts.wrong, counts.worst, counts.momentum, counts.work,
       counts.opposed, counts.unsolved, counts.sweeps / counts.problems, seconds);
-  EXPECT_LE(counts.ill_posed, 0.05 * problems);
+  EXPECT_LE(counts.ill_posed, 0.1 * problems);  // most of them with restitution
   EXPECT_EQ(counts.wrong, 0);
   EXPECT_EQ(counts.momentum, 0);
   EXPECT_EQ(counts.work, 0);
