@@ -131,9 +131,12 @@ def test_what_is_not_solved_is_named():
     assert early.worst_group == 0 and early.worst_contact >= 0 and early.method == Method.CONJUGATE
 
 
-def test_contacts_that_are_refused_late_are_counted():
+@pytest.mark.parametrize("islands", [1, 2])
+def test_contacts_that_are_refused_late_are_counted(islands):
     """By a law that refuses a node from its 300th call on."""
-    high = column(400)
+    high = Problem("coulomb", friction=0.3)
+    for k in range(400):
+        high.touch(high.add((0, 0, -1e-2), 1.0), k - 1 if k % (400 // islands) else -1)
     high.make()
     law, calls, why = _abi.law.from_buffer_copy(high.contacts._struct.law[0]), itertools.count(1), ctypes.c_char_p(b"too tired")
     usual = type(law.evaluate)(ctypes.cast(law.evaluate, ctypes.c_void_p).value)  # a member that is read is a reference
