@@ -56,7 +56,7 @@ AREAS = {
     "plugins": Area("plugins", ["laws_test", "check_test:*Shipped*"]),
     "kit": Area("api/include/ilaw/kit", ["kit_test", "laws_test", "ctest kit_probe_is_checked", "check_test:*Shipped*"]),
     "create": Area("api/include/ilaw/create.h", ["kit_test", "plain_c_test", "laws_test"]),
-    "loader": Area("api/loader", ["loader_test", "loader_memory_test", "unusual_hosts_test"]),
+    "loader": Area("api/loader", ["loader_test", "ctest loader.refusals", "loader_memory_test", "unusual_hosts_test"]),
     "search": Area("api/search", ["facets_test", "mesh_test"]),
     "coupled": Area("api/coupled", ["coupled_test", "host_test", "ctest host.motions", "ctest python.solver_machine"]),
     "check": Area("api/check", ["check_test"]),
