@@ -16,9 +16,10 @@
 The copy is build/mutants; the environment variable ILAW_MUTANT is the number of the mutant that its programs have,
 0 for none. The nearest tests come first ("program", "program:filter", or "ctest NAME"), then the programs of the mutant's area,
 the quickest first, until one fails, crashes or hangs: that has caught it. A line per mutant names the tests that ran
-and their seconds. Exit codes: 0 at least 90 % are caught in every area, 1 otherwise. With --changed these are too few for
-a score, and a survivor may be no fault: 1 if none of at least three is caught. There, functions of headers are left
-out, because most sources include them, and only a test that failed runs without its mutant, too.
+and their seconds. Exit codes: 0 at least 90 % are caught in every area, 1 otherwise. With --changed these are too few
+for a score, and a survivor may be no fault: 1 if none of at least three is caught, 77 if not one was judged, for want
+of time or of places. There, functions of headers are left out, because most sources include them, and only a test that
+failed runs without its mutant, too.
 """
 import argparse
 import collections
@@ -45,6 +46,7 @@ TREE = SOURCE / "build" / "mutants"
 BUILD = TREE / "build" / "release"
 GOAL = 0.9
 HANGS = 600  # seconds, without a mutant
+JUDGED_NOTHING = 77
 
 
 class Area(typing.NamedTuple):
@@ -207,6 +209,11 @@ def build(tests, jobs, deadline):
                                 "-k", "0"])
 
 
+def source_of(path):
+    """A file of the copy as git names it. The compiler names it from its own folder, where ccache is told to."""
+    return os.path.relpath(os.path.normpath(BUILD / path), TREE)
+
+
 def build_fresh(mutants, tests, jobs, deadline):
     """Leaves out the mutants of lines that do not compile, such as constants and swapped arguments of two types."""
     sources = {mutant["file"] for mutant in mutants}
@@ -214,8 +221,8 @@ def build_fresh(mutants, tests, jobs, deadline):
         copy_tree({file: with_mutants(file, [one for one in mutants if one["file"] == file]) if
                    any(one["file"] == file for one in mutants) else (SOURCE / file).read_text() for file in sources})
         code, said = build(tests, jobs, deadline)
-        wrong = {(file, int(line) - 1) for file, line in
-                 re.findall(rf"{TREE}/(\S+?):(\d+):(?:\d+:)? (?:error|  required)", said)}
+        wrong = {(source_of(path), int(line) - 1) for path, line in
+                 re.findall(r"(?:^|\s)(\S+?):(\d+):(?:\d+:)? (?:error|  required)", said)}
         left = [one for one in mutants if (one["file"], one.get("line")) not in wrong]
         if code == 0 or len(left) == len(mutants):
             code == 0 or sys.exit(said)
@@ -365,6 +372,8 @@ def judge_changed(mutants, tests, jobs, deadline):
                 print(f"{word:8}  {mutant['area']:7}  {mutant['name']}: {', '.join(ran)}", flush=True)
     except subprocess.TimeoutExpired:
         print("no time for the build of the mutants")
+    if all(end is None for end in found):
+        return JUDGED_NOTHING
     return 1 if found.count(False) >= 3 and not any(found) else 0
 
 
@@ -388,7 +397,7 @@ def main():
     tests = sorted({test for mutant in chosen for test in tests_of(mutant, options.near, {})})
     deadline = time.monotonic() + 60 * options.minutes
     if options.changed:
-        return 0 if not chosen else judge_changed(chosen, tests, options.jobs, deadline)
+        return judge_changed(chosen, tests, options.jobs, deadline) if chosen else JUDGED_NOTHING
     chosen = build_fresh(chosen, tests, options.jobs, deadline)
     score = collections.defaultdict(list)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:

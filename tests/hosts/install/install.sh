@@ -4,6 +4,7 @@
 # other two ways must bring the same files. Packages are also installed and removed by dpkg (clean_root.sh).
 # Usage: install.sh BUILD SOURCE C_COMPILER CXX_COMPILER install|archive|packages
 set -euo pipefail
+unset ILAW_PATH  # laws are found beside the program
 build=$1 source=$2 cc=$3 cxx=$4 way=$5
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -53,7 +54,8 @@ if [ "$way" != install ]; then
 fi
 
 echo "== the program, from where it lies"
-"$prefix/bin/ilaw" list | grep -q "^coulomb .*$prefix/lib/ilaw/coulomb.so"
+"$prefix/bin/ilaw" list >laws
+grep -q "^coulomb .*$prefix/lib/ilaw/coulomb.so" laws
 "$prefix/bin/ilaw" run "$prefix/share/ilaw/scenes/sliding_block.json" --out results
 
 if [ -e "$build/lib/libilaw_lammps.so" ] && [ -x "$(command -v lmp)" ]; then
