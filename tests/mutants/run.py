@@ -6,6 +6,7 @@
     tests/mutants/run.py --area kit        those of an area (AREAS)
     tests/mutants/run.py --last 24         the last ones of mutants.json
     tests/mutants/run.py --numbers 68 151  these, counted from 1
+    tests/mutants/run.py --faults          faults that strangers found, reversed, by the machines of each alone
     tests/mutants/run.py --near            by the nearest tests of each alone: survivors may be caught by others
     tests/mutants/run.py --fresh 7         60 new ones of each area, at places drawn by this seed (fresh.py)
     tests/mutants/run.py --fresh 7 --changed main --count 4 --minutes 3
@@ -44,7 +45,8 @@ MUTANTS = pathlib.Path(__file__).with_name("mutants.json")
 PAGE = SOURCE / "docs" / "reliability.md"
 TREE = SOURCE / "build" / "mutants"
 BUILD = TREE / "build" / "release"
-GOAL = 0.9
+LOG = SOURCE / "docs" / "log" / "mutants.md"
+GOAL, GOAL_OF_MACHINES = 0.9, 0.8
 HANGS = 600  # seconds, without a mutant
 JUDGED_NOTHING = 77
 
@@ -58,6 +60,7 @@ AREAS = {
     "plugins": Area("plugins", ["laws_test", "check_test:*Shipped*"]),
     "kit": Area("api/include/ilaw/kit", ["kit_test", "laws_test", "ctest kit_probe_is_checked", "check_test:*Shipped*"]),
     "create": Area("api/include/ilaw/create.h", ["kit_test", "plain_c_test", "laws_test"]),
+    "plain_c": Area("api/include/ilaw/plain_c.h", ["plain_c_test"]),
     "loader": Area("api/loader", ["loader_test", "loader_memory_test", "unusual_hosts_test"]),
     "search": Area("api/search", ["facets_test", "mesh_test"]),
     "coupled": Area("api/coupled", ["coupled_test", "host_test", "ctest host.motions", "ctest python.solver_machine"]),
@@ -74,12 +77,17 @@ AREAS = {
     "mujoco": Area("api/mujoco", ["mujoco_test"]), "dealii": Area("api/dealii", ["ctest dealii"]),
     "openradioss": Area("api/openradioss", ["ctest openradioss"])}
 SWITCH = """#pragma once
-#include <cstdlib>
+#include <stdlib.h>
+static inline int ilaw_mutant_here(void) {
+  const char* text = getenv("ILAW_MUTANT");
+  return text ? atoi(text) : 0;
+}
+#ifdef __cplusplus
 // Read when a program or law is loaded, so that evaluate stays pure.
-[[maybe_unused]] static const int ilaw_mutant = [] {
-  const char* text = std::getenv("ILAW_MUTANT");
-  return text ? std::atoi(text) : 0;
-}();
+[[maybe_unused]] static const int ilaw_mutant = ilaw_mutant_here();
+#else
+#define ilaw_mutant ilaw_mutant_here()
+#endif
 """
 
 
@@ -89,6 +97,7 @@ def arguments():
     parser.add_argument("--area", choices=sorted(AREAS), action="append", help="mutants of this area; to be repeated")
     parser.add_argument("--last", type=int, default=0, help="this many from the end of mutants.json")
     parser.add_argument("--numbers", type=int, nargs="+", default=[], help="these of mutants.json, counted from 1")
+    parser.add_argument("--faults", action="store_true", help="those with a \"fault\", by their \"machines\" alone")
     parser.add_argument("--near", action="store_true", help="the nearest tests of each alone")
     parser.add_argument("--fresh", type=int, metavar="SEED", help="mutants at places that this seed draws")
     parser.add_argument("--count", type=int, default=60, help="fresh mutants of each area")
@@ -246,7 +255,9 @@ def passes(test, number, limit):
 
 
 def tests_of(mutant, near, usual):
-    """The nearest tests, then those of the area by their usual seconds."""
+    """The nearest tests, then those of the area by their usual seconds; with --faults the machines alone."""
+    if near == "faults":
+        return mutant["machines"]
     others = [] if near else sorted(AREAS[mutant["area"]].programs, key=lambda test: usual.get(test, 0.0))
     return list(dict.fromkeys(mutant["tests"] + others))
 
@@ -323,6 +334,14 @@ def table(scores, everything):
     return "\n".join(["| area | mutants | run | caught | commit |", "| --- | --- | --- | --- | --- |", *rows])
 
 
+def table_of_faults(ends):
+    """A row per fault: what was reversed, and the machine that caught it, the last that ran."""
+    rows = [f"| {mutant['fault']} | {mutant['name']} | {ran[-1].rpartition(' ')[0].rpartition(' ')[0] if found else 'none'} |"
+            for mutant, found, ran in sorted(ends, key=lambda end: end[0]["fault"])]
+    rows.append(f"| all | {len(ends)} | {sum(found for _, found, _ in ends)} |")
+    return "\n".join(["| fault | reversed | caught by |", "| --- | --- | --- |", *rows])
+
+
 def scores_on_page():
     rows = re.findall(r"^\| (\w+) \| \d+ \| (\d+) \| (\d+) \| (.+) \|$", PAGE.read_text(), re.MULTILINE)
     return {area: Score(int(run), int(found), commit) for area, run, found, commit in rows if area in AREAS}
@@ -390,26 +409,35 @@ def main():
     if options.check:
         return 0
 
+    near = "faults" if options.faults else options.near
     chosen = [mutant for mutant in everything[-options.last:]
               if options.only in mutant["name"] and mutant["area"] in (options.area or AREAS)
-              and mutant["number"] in (options.numbers or [mutant["number"]])]
+              and mutant["number"] in (options.numbers or [mutant["number"]]) and ("fault" in mutant or not options.faults)]
     commit = commit_here()
-    tests = sorted({test for mutant in chosen for test in tests_of(mutant, options.near, {})})
+    tests = sorted({test for mutant in chosen for test in tests_of(mutant, near, {})})
     deadline = time.monotonic() + 60 * options.minutes
     if options.changed:
         return judge_changed(chosen, tests, options.jobs, deadline) if chosen else JUDGED_NOTHING
     chosen = build_fresh(chosen, tests, options.jobs, deadline)
-    score = collections.defaultdict(list)
+    ends = []
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         sound = dict(zip(tests, pool.map(lambda test: passes(test, 0, HANGS), tests)))
         if broken := [test for test, (passed, *_) in sound.items() if not passed]:
             print("fail without any mutant: " + ", ".join(broken))
             return 1
         usual = {test: seconds for test, (_, seconds, _) in sound.items()}
-        for mutant, (found, ran) in zip(chosen, pool.map(lambda one: caught(one, options.near, usual), chosen)):
-            score[mutant["area"]].append(found)
-            print(f"{'caught' if found else 'SURVIVED':8}  {mutant['area']:7}  {mutant['name']}: {', '.join(ran)}",
+        for mutant, end in zip(chosen, pool.map(lambda one: caught(one, near, usual), chosen)):
+            ends.append((mutant, *end))
+            print(f"{'caught' if end[0] else 'SURVIVED':8}  {mutant['area']:7}  {mutant['name']}: {', '.join(end[1])}",
                   flush=True)
+    if options.faults:
+        print(table_of_faults(ends))
+        if options.table:
+            marked_part.write(LOG, "<!-- faults by machines -->", "<!-- end of the faults -->", table_of_faults(ends))
+        return 0 if sum(found for _, found, _ in ends) >= GOAL_OF_MACHINES * len(ends) else 1
+    score = collections.defaultdict(list)
+    for mutant, found, _ in ends:
+        score[mutant["area"]].append(found)
     scores = {area: Score(len(found), sum(found), commit) for area, found in score.items()}
     print(table(scores, everything))
     if options.table:
