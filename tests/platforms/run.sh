@@ -18,12 +18,12 @@ mkdir -p "$build"
 scenes=("$@")
 [ $# -gt 0 ] || mapfile -t scenes < <(git ls-files 'host_mock/scenes/*.json' 'plugins/*/*.json')
 
-options=() targets=(all) run=()
+options=() run=()
+# Scenes name the laws that they need.
+targets=(ilaw_coupled ilaw_search ilaw_loader $(grep -ohE '"law": *"\w+"' "${scenes[@]}" | cut -d'"' -f4 | sort -u))
 if [ "$way" = threads ]; then
   cc=clang cxx=clang++ flags="-g1 -fsanitize=thread -DILAW_HOSTILE"
   options=(-DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -g1" -DILAW_SANITIZE=thread -DILAW_HOSTILE=ON)
-  # Scenes name the laws that they need.
-  targets=(ilaw_coupled ilaw_search ilaw_loader $(grep -ohE '"law": *"\w+"' "${scenes[@]}" | cut -d'"' -f4 | sort -u))
 else
   triplet=${way/#ppc64le/powerpc64le}-linux-gnu
   cc=$triplet-gcc cxx=$triplet-g++ flags="-U__ARM_FEATURE_FMA"
