@@ -65,14 +65,15 @@ AREAS = {
     "search": Area("api/search", ["facets_test", "mesh_test"]),
     "coupled": Area("api/coupled", ["coupled_test", "host_test", "ctest host.motions", "ctest python.solver_machine"]),
     "check": Area("api/check", ["check_test"]),
-    "host": Area("host_mock/host", ["host_test", "mesh_test", "program_test", "faults_test", "ctest host.motions"]),
+    "host": Area("host_mock/host", ["ctest host.refusals", "host_test", "mesh_test", "program_test", "faults_test",
+                                    "ctest host.motions", "stress_test"]),
     "results": Area("host_mock/host/results", ["host_test", "mesh_test", "program_test", "ctest host.motions"]),
     "stress": Area("host_mock/instruments/stress", ["stress_test"]),
-    "cli": Area("host_mock/cli", ["program_test", "host_test", "ctest host.motions"]),
-    "bench": Area("host_mock/instruments/bench", ["program_test"]),
+    "cli": Area("host_mock/cli", ["program_test", "ctest host.refusals", "host_test", "ctest host.motions"]),
+    "bench": Area("host_mock/instruments/bench", ["program_test", "ctest host.refusals"]),
     "python": Area("api/python/ilaw", [f"ctest python.{name}" for name in
                                        ("interface", "coupled", "fields", "search", "shapes", "bindings", "solver_machine")]
-                   + ["ctest view.plot", "ctest view.page_data", "ctest view.study"]),
+                   + ["ctest view.plot", "ctest view.page_data", "ctest view.study", "program_test:Sweep.*:Table.*:Plot.*:Picture.*"]),
     "lammps": Area("api/lammps", ["ctest lammps"]), "yade": Area("api/yade", ["ctest yade"]),
     "mujoco": Area("api/mujoco", ["mujoco_test"]), "dealii": Area("api/dealii", ["ctest dealii"]),
     "openradioss": Area("api/openradioss", ["ctest openradioss"])}
