@@ -66,7 +66,22 @@ class Lattice(typing.NamedTuple):
     by: str = ""
 
 
-REFUSALS = {"tolerance": {"tolerance": np.nan}, "rounding": {"rounding": np.inf}, "speed": {"speed": -1.0}}
+class NoNumbers:
+    """Ranks whose largest number is none."""
+
+    def sum_bodies(self, values):
+        pass
+
+    def sum(self, values):
+        pass
+
+    def largest(self, values):
+        values[:] = np.nan
+
+
+# By a word of the reason. The last two are of bodies and groups, the others of a solve.
+REFUSALS = {"tolerance": {"tolerance": np.nan}, "rounding": {"rounding": np.inf}, "speed": {"speed": -1.0},
+            "exchange": {"exchange": NoNumbers()}, "inverse_mass": {"inverse_mass": np.nan}, "twice": {"twice": True}}
 
 
 class Kind:
@@ -247,7 +262,9 @@ class Machine:
             for array in (self.v + [0, 0, -G * H], self.v, self.w, self.w, kind.mass, kind.inertia))
         turns = {"spin_free": w, "spin_previous": w_previous, "inverse_inertia": 1 / inertia} if kind.rotates else {}
         owned = {"owned": BODIES // 2} if "exchange" in options else {}
-        bodies = Bodies(v_free=v, v_previous=v_previous, inverse_mass=1 / mass, **turns, **owned)
+        inverse_mass = 1 / mass
+        inverse_mass[-1] = options.pop("inverse_mass", inverse_mass[-1])
+        bodies = Bodies(v_free=v, v_previous=v_previous, inverse_mass=inverse_mass, **turns, **owned)
         bad = self.order[int(action.bad * len(self.order))] if action.bad >= 0 and self.order else None
         groups, chosen = [], []
         for law in range(len(kind.laws)):
@@ -257,6 +274,7 @@ class Machine:
             moment = moment if kind.form == "transverse_spin" else None
             groups.append(kind.contacts(law, mine, impulse, moment, state, bad, first))
             chosen.append(mine)
+        groups += groups[:1] * options.pop("twice", False)
         before = [[array.copy() for array in outputs(bodies, group)] for group in groups]
         try:
             report = solver.solve(bodies, groups, time=(self.steps + 1) * H, bad_nodes="report",
@@ -361,6 +379,8 @@ class Machine:
             demand(off < 1e-8, "a law alone answers otherwise, by", off)
 
     def refuse(self, action):
+        if action.how == "exchange" and not self.order:
+            return  # ranks without contacts have nothing to agree on
         found, error = self.call(self.solver, self.order, Solve(), **REFUSALS[action.how])
         demand(found is None, "not refused:", action.how)
         demand(action.how in str(error), "refused with", error)
