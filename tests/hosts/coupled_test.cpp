@@ -123,19 +123,23 @@ std::int32_t refuses_later(const ilaw_instance* instance, const ilaw_batch* batc
   report->reason = "too tired";
   return ILAW_BAD_NODES;
 }
+// Also in an island, which is iterated apart from the others.
 TEST(CoupledReport, CountsContactsThatAreRefusedLate) {
-  CoupledProblem high = column(400);
-  high.options.tolerance = 1e-12;
-  high.options.most_sweeps = 200;
-  const ilaw_batch batch = high.batch();
-  ilaw_contacts contacts = high.contacts(batch);
-  tired = contacts.law, calls = 0;
-  ilaw_law law = *tired;
-  law.evaluate = refuses_later;
-  contacts.law = &law;
-  const ilaw_coupled_report report = high.solver.solve(high.bodies(), contacts, high.options);
-  EXPECT_GT(report.bad_count, 0);
-  EXPECT_STREQ(report.reason, "too tired");
+  for (const bool has_islands : {false, true}) {
+    CoupledProblem high = column(400);
+    if (has_islands) high.touch(high.add_body({}), -1, {0.0, 0.0, 1.0});
+    high.options.tolerance = 1e-12;
+    high.options.most_sweeps = 200;
+    const ilaw_batch batch = high.batch();
+    ilaw_contacts contacts = high.contacts(batch);
+    tired = contacts.law, calls = 0;
+    ilaw_law law = *tired;
+    law.evaluate = refuses_later;
+    contacts.law = &law;
+    const ilaw_coupled_report report = high.solver.solve(high.bodies(), contacts, high.options);
+    EXPECT_GT(report.bad_count, 0) << has_islands;
+    EXPECT_STREQ(report.reason, "too tired");
+  }
 }
 
 // Anderson's iterates jump, and some of them are far off: the best impulses are returned, wherever they end.
