@@ -46,8 +46,9 @@ AuditedInterface::AuditedInterface(const Interface& interface, const Model& mode
 bool AuditedInterface::find_whether_it_stops() const {
   const Dofs zero = Dofs::Zero(model_.mass().size());
   const AuditedStep step{zero, zero, zero, zero, 0.0, 1.0, 1.0, 0.0, false};
+  const Vector& tangent = interface_.setup().tangent;
   Call call;
-  call.normal = Vector::Unit(d_, d_ - 1);
+  call.normal = tangent.size() > 0 ? across(tangent) : Vector(Vector::Unit(d_, d_ - 1));
   call.v_free = call.v_smooth = call.v_previous = -call.normal;
   call.delassus = Vector::Ones(d_);
   call.parameters = interface_.parameters_of(0);
