@@ -39,7 +39,7 @@ SCENES = {
     "tyre_block": ("time", "time", "temperature of the tread", ["n0.T"]),
     "two_blocks": ("time", "time", "gap of a node", [("n405.gap", "edge"), ("n440.gap", "middle")]),
     "tilting_plane": ("time", "time", "displacement of the block", [("n4.u0", "x"), ("n4.u2", "z")]),
-    "patch_test": ("time", "time", "impulse of a node", [("n37.r2", "both sides"), ("n193.r2", "one side")]),
+    "patch_test": ("time", "time", "impulse of a node", [("n37.r2", "dual mortar"), ("n193.r2", "node to facet")]),
     "half_model": ("time", "time", "force of the floor", [("floor.F2", "whole"), ("floor_2.F2", "half")]),
     "prestressed_seal": ("time", "time", "force", [("lid.F2", "lid"), ("fluid.F0", "fluid")]),
     "seal": ("time", "time", "displacement of the seal", [("n21.u0", "x"), ("n21.u2", "z")]),

@@ -287,7 +287,8 @@ def end_notched() -> Case:
         return {"box": [[along - near, -1.0, height - near], [along + near, 1.0, height + near]]}
 
     def joint(name: str, law: str, first: float, last: float, parameters: Scene) -> Scene:
-        return {"name": name, "law": law, "against": {"surface": "low.z_max"}, "parameters": parameters,
+        facets = {"surface": "low.z_max", "discretization": "node_to_facet"}  # areas of the nodes, which do not slide
+        return {"name": name, "law": law, "against": facets, "parameters": parameters,
                 "nodes": {"box": [[first - near, -1.0, -near], [last + near, 1.0, near]], "of": "up.z_min"}}  # fmt: skip
 
     bond = {"strength": 5.0 * strength, "toughness": 25.0 * toughness, "strength_2": strength, "toughness_2": toughness}

@@ -261,15 +261,19 @@ class Fortran:
         return f"{scalar} :: {name}{shape} = {initial}"
 
     def argument(self, name: str, kind: c_ast.Node) -> str:
-        """Structs by reference, arrays of numbers as such, all else that C has a pointer for as type(c_ptr)."""
+        """Structs by reference, arrays of numbers as such, all else that C has a pointer for as type(c_ptr).
+
+        Structs and pointers have the attribute target, because the callee may read and write what they point to. Without
+        it gfortran keeps variables of the caller in registers whose addresses are in there alone.
+        """
         if not isinstance(kind, c_ast.PtrDecl) or isinstance(kind.type, c_ast.FuncDecl):
             return f"{self.scalar(kind)}, value :: {name}"
         target, intent = kind.type, "in" if is_const(kind.type) else "inout"
         if isinstance(target, c_ast.PtrDecl):
             array = is_const(target)  # `const T* const*`: pointers to read; `T**`: a result
-            return f"type(c_ptr), intent(in) :: {name}(*)" if array else f"type(c_ptr), intent(out) :: {name}"
+            return f"type(c_ptr), intent(in), target :: {name}(*)" if array else f"type(c_ptr), intent(out) :: {name}"
         if self.all.name(target) in self.all.structs:
-            return f"{self.scalar(target)}, intent({intent}) :: {name}"
+            return f"{self.scalar(target)}, intent({intent}), target :: {name}"
         if self.all.name(target) in SCALARS:
             return f"{self.scalar(target)}, intent({intent}) :: {name}(*)"
         return f"type(c_ptr), value :: {name}"

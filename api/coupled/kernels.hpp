@@ -28,10 +28,10 @@ inline Vector velocity_at(const Body& body, const Vector& arm) {
 }
 
 // A body's velocity and inverse mass, its spin and inverse moment of inertia.
-inline Lanes& velocity_row(Body& body) { return lanes(body.velocity.data()); }
-inline Lanes& spin_row(Body& body) { return lanes(body.spin.data()); }
-inline const Lanes& velocity_row(const Body& body) { return lanes(body.velocity.data()); }
-inline const Lanes& spin_row(const Body& body) { return lanes(body.spin.data()); }
+inline Lanes& velocity_row(Body& body) { return *lanes(body.velocity.data()); }
+inline Lanes& spin_row(Body& body) { return *lanes(body.spin.data()); }
+inline const Lanes& velocity_row(const Body& body) { return *lanes(body.velocity.data()); }
+inline const Lanes& spin_row(const Body& body) { return *lanes(body.spin.data()); }
 
 // Each kernel has relative(bodies, lane), and apply(lane, r, add), which calls add(body, impulse, moment),
 // both with `width` components. Those of bodies with one mass and one moment of inertia have the same for

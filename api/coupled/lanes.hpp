@@ -11,19 +11,20 @@ namespace ilaw::coupled {
 inline constexpr std::size_t lane_count = 4;
 using Lanes [[gnu::vector_size(8 * lane_count), gnu::may_alias, gnu::aligned(8)]] = double;
 
-inline Lanes& lanes(double* at) { return *reinterpret_cast<Lanes*>(at); }
-inline const Lanes& lanes(const double* at) { return *reinterpret_cast<const Lanes*>(at); }
+// Pointers, because clang takes a reference that a function returns to be aligned as usual, to 32 bytes.
+inline Lanes* lanes(double* at) { return reinterpret_cast<Lanes*>(at); }
+inline const Lanes* lanes(const double* at) { return reinterpret_cast<const Lanes*>(at); }
 
 struct LanesVector {
   Lanes x, y, z;
 };
 inline LanesVector lanes(const double* first, std::size_t stride) {
-  return {lanes(first), lanes(first + stride), lanes(first + 2 * stride)};
+  return {*lanes(first), *lanes(first + stride), *lanes(first + 2 * stride)};
 }
 inline void put(const LanesVector& v, double* first, std::size_t stride) {
-  lanes(first) = v.x;
-  lanes(first + stride) = v.y;
-  lanes(first + 2 * stride) = v.z;
+  *lanes(first) = v.x;
+  *lanes(first + stride) = v.y;
+  *lanes(first + 2 * stride) = v.z;
 }
 inline LanesVector operator+(const LanesVector& a, const LanesVector& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
@@ -97,7 +98,7 @@ inline double sum(const Lanes& a) { return (a[0] + a[1]) + (a[2] + a[3]); }
 struct ScalarForm {
   const double* h;
   LanesVector operator()(std::size_t q, const LanesVector& x) const {
-    const Lanes s = lanes(h + q);
+    const Lanes s = *lanes(h + q);
     return {s * x.x, s * x.y, s * x.z};
   }
 };
@@ -106,7 +107,7 @@ struct TransverseForm {
   std::size_t stride;
   LanesVector operator()(std::size_t q, const LanesVector& x) const {
     const LanesVector n = lanes(normal + q, stride);
-    const Lanes t = lanes(h + stride + q), d = (lanes(h + q) - t) * dot(n, x);
+    const Lanes t = *lanes(h + stride + q), d = (*lanes(h + q) - t) * dot(n, x);
     return {t * x.x + d * n.x, t * x.y + d * n.y, t * x.z + d * n.z};
   }
 };
@@ -114,18 +115,18 @@ struct PlaneForm {
   const double* h;
   std::size_t stride;
   LanesVector operator()(std::size_t q, const LanesVector& x) const {
-    const Lanes xy = lanes(h + 2 * stride + q);
-    return {lanes(h + q) * x.x + xy * x.y, xy * x.x + lanes(h + stride + q) * x.y, x.z - x.z};
+    const Lanes xy = *lanes(h + 2 * stride + q);
+    return {*lanes(h + q) * x.x + xy * x.y, xy * x.x + *lanes(h + stride + q) * x.y, x.z - x.z};
   }
 };
 struct FullForm {
   const double* h;
   std::size_t stride;
   LanesVector operator()(std::size_t q, const LanesVector& x) const {
-    const Lanes xy = lanes(h + 3 * stride + q), xz = lanes(h + 4 * stride + q),
-                yz = lanes(h + 5 * stride + q);
-    return {lanes(h + q) * x.x + xy * x.y + xz * x.z, xy * x.x + lanes(h + stride + q) * x.y + yz * x.z,
-            xz * x.x + yz * x.y + lanes(h + 2 * stride + q) * x.z};
+    const Lanes xy = *lanes(h + 3 * stride + q), xz = *lanes(h + 4 * stride + q),
+                yz = *lanes(h + 5 * stride + q);
+    return {*lanes(h + q) * x.x + xy * x.y + xz * x.z, xy * x.x + *lanes(h + stride + q) * x.y + yz * x.z,
+            xz * x.x + yz * x.y + *lanes(h + 2 * stride + q) * x.z};
   }
 };
 // The form with spins of ilaw.h; length as that of Layout.
@@ -135,7 +136,7 @@ struct SpinForm {
   LanesWrench operator()(std::size_t q, const LanesWrench& x) const {
     const TransverseForm by_impulse{h, normal, stride}, by_moment{h + 3 * stride, normal, stride};
     const LanesVector n = lanes(normal + q, stride);
-    const Lanes k = lanes(h + 2 * stride + q);
+    const Lanes k = *lanes(h + 2 * stride + q);
     return {added(by_impulse(q, x.linear), k, cross(n, x.angular)),
             added(by_moment(q, x.angular), -k, cross(n, x.linear))};
   }
@@ -154,7 +155,7 @@ inline LanesWrench read(const SpinForm&, const double* first, std::size_t stride
   return lanes_at<6>(first, stride);
 }
 inline Lanes size(const SpinForm& form, std::size_t q, const LanesWrench& x) {
-  return larger(largest(x.linear), lanes(form.length + q) * largest(x.angular));
+  return larger(largest(x.linear), *lanes(form.length + q) * largest(x.angular));
 }
 
 }  // namespace ilaw::coupled

@@ -254,9 +254,9 @@ ILAW_COUPLED_VERSIONS void Sweep::extrapolate(Block& block, double beta) const {
   const double* last = block.column(layout.change);
   for (std::size_t c = 0; c < static_cast<std::size_t>(layout.width); ++c)
     for (std::size_t q = c * block.stride; q < c * block.stride + padded(block.count); q += lane_count) {
-      const Lanes step = beta * lanes(direction + q);
-      lanes(r + q) += step;
-      lanes(direction + q) = step + lanes(last + q);
+      const Lanes step = beta * *lanes(direction + q);
+      *lanes(r + q) += step;
+      *lanes(direction + q) = step + *lanes(last + q);
     }
 }
 

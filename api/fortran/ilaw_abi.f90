@@ -268,7 +268,7 @@ module ilaw_abi
     integer(c_int32_t) function ilaw_create_function(id, setup, instance, message, message_size) bind(c)
       import :: c_int32_t, c_ptr, c_size_t, ilaw_setup
       type(c_ptr), value :: id
-      type(ilaw_setup), intent(in) :: setup
+      type(ilaw_setup), intent(in), target :: setup
       type(c_ptr), intent(out) :: instance
       type(c_ptr), value :: message
       integer(c_size_t), value :: message_size
@@ -280,13 +280,13 @@ module ilaw_abi
     integer(c_int32_t) function ilaw_info_function(instance, info) bind(c)
       import :: c_int32_t, c_ptr, ilaw_instance_info
       type(c_ptr), value :: instance
-      type(ilaw_instance_info), intent(inout) :: info
+      type(ilaw_instance_info), intent(inout), target :: info
     end function
     integer(c_int32_t) function ilaw_batch_function(instance, batch, report) bind(c)
       import :: c_int32_t, c_ptr, ilaw_batch, ilaw_report
       type(c_ptr), value :: instance
-      type(ilaw_batch), intent(in) :: batch
-      type(ilaw_report), intent(inout) :: report
+      type(ilaw_batch), intent(in), target :: batch
+      type(ilaw_report), intent(inout), target :: report
     end function
     type(c_ptr) function ilaw_extension_function(name) bind(c)
       import :: c_ptr
@@ -358,7 +358,7 @@ module ilaw_abi
       import :: c_int32_t, c_ptr, c_size_t, ilaw_setup
       type(c_ptr), value :: library
       type(c_ptr), value :: id
-      type(ilaw_setup), intent(in) :: setup
+      type(ilaw_setup), intent(in), target :: setup
       type(c_ptr), intent(out) :: interface
       type(c_ptr), value :: message
       integer(c_size_t), value :: message_size
@@ -378,21 +378,21 @@ module ilaw_abi
     integer(c_int32_t) function ilaw_interface_info(interface, info) bind(c, name='ilaw_interface_info')
       import :: c_int32_t, c_ptr, ilaw_instance_info
       type(c_ptr), value :: interface
-      type(ilaw_instance_info), intent(inout) :: info
+      type(ilaw_instance_info), intent(inout), target :: info
     end function
     integer(c_int32_t) function ilaw_interface_initialise(interface, batch, report) &
       bind(c, name='ilaw_interface_initialise')
       import :: c_int32_t, c_ptr, ilaw_batch, ilaw_report
       type(c_ptr), value :: interface
-      type(ilaw_batch), intent(in) :: batch
-      type(ilaw_report), intent(inout) :: report
+      type(ilaw_batch), intent(in), target :: batch
+      type(ilaw_report), intent(inout), target :: report
     end function
     integer(c_int32_t) function ilaw_interface_evaluate(interface, batch, report) &
       bind(c, name='ilaw_interface_evaluate')
       import :: c_int32_t, c_ptr, ilaw_batch, ilaw_report
       type(c_ptr), value :: interface
-      type(ilaw_batch), intent(in) :: batch
-      type(ilaw_report), intent(inout) :: report
+      type(ilaw_batch), intent(in), target :: batch
+      type(ilaw_report), intent(inout), target :: report
     end function
     integer(c_int32_t) function ilaw_search(visit, context) bind(c, name='ilaw_search')
       import :: c_funptr, c_int32_t, c_ptr

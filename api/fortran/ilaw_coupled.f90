@@ -33,9 +33,9 @@ contains
   ! Solves a step: ilaw_coupled_solve with an array of groups.
   integer(c_int32_t) function ilaw_solve(solver, bodies, groups, options, report) result(code)
     type(c_ptr), intent(in) :: solver
-    type(ilaw_bodies), intent(in) :: bodies
+    type(ilaw_bodies), intent(in), target :: bodies
     type(ilaw_contacts), intent(in), target :: groups(:)
-    type(ilaw_coupled_options), intent(in) :: options
+    type(ilaw_coupled_options), intent(in), target :: options
     type(ilaw_coupled_report), intent(inout) :: report
     type(c_ptr) :: pointers(size(groups))
     integer :: g

@@ -149,11 +149,11 @@ module ilaw_coupled_abi
       bind(c, name='ilaw_coupled_solve')
       import :: c_int32_t, c_int64_t, c_ptr, ilaw_bodies, ilaw_coupled_options, ilaw_coupled_report
       type(c_ptr), value :: solver
-      type(ilaw_bodies), intent(in) :: bodies
-      type(c_ptr), intent(in) :: groups(*)
+      type(ilaw_bodies), intent(in), target :: bodies
+      type(c_ptr), intent(in), target :: groups(*)
       integer(c_int64_t), value :: group_count
-      type(ilaw_coupled_options), intent(in) :: options
-      type(ilaw_coupled_report), intent(inout) :: report
+      type(ilaw_coupled_options), intent(in), target :: options
+      type(ilaw_coupled_report), intent(inout), target :: report
     end function
   end interface
 end module ilaw_coupled_abi

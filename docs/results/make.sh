@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Measures everything that docs/results shows: builds in Release, runs the cases, writes tables/*.csv and img/*.png, and
 # puts the tables into the pages. A quarter of an hour on two quiet cores, after the build. With names of parts (orders,
-# study, sides, impacts, long, share) it measures these alone.
+# study, impacts, long, share) it measures these alone.
 # Usage: docs/results/make.sh [BUILD_FOLDER] [PART...]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -132,20 +132,6 @@ measure_studies() {
   measure_study postit_3d $scenes/postit_3d.json
 }
 if wanted study; then measure_studies; fi
-
-# ---- one side, both sides and a penalty on meshes that do not match
-sides=$here/tables/study_sides.csv
-measure_sides() {
-  echo "case,elements,law,fine side,coarse side,both sides,displacement,iterations" >"$sides"
-  for law in "" "--penalty 1e5" "--penalty 1e6"; do
-    echo "sides: ${law:-contact}"
-    # shellcheck disable=SC2086  # an option and its value, or none
-    /usr/bin/python3 $here/non_matching.py "$ilaw" --cases impact "at rest" --sides fine coarse both $law --append "$sides" >"$work/sides.txt"
-  done
-  { head --lines=1 "$sides"; tail --lines=+2 "$sides" | sort --stable --field-separator=, --key=1,1r --key=2,2V; } >"$work/sides.csv"
-  cp "$work/sides.csv" "$sides"
-}
-if wanted sides; then measure_sides; fi
 
 # ---- impacts at their instants
 if wanted impacts; then /usr/bin/python3 $here/impacts.py "$ilaw"; fi

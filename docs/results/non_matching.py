@@ -20,7 +20,7 @@ import numpy
 
 PRESSURE, YOUNG, DENSITY, HEIGHT, FRICTION = 1e3, 1e6, 1e3, 0.5, 0.3
 INNER, MIDDLE, OUTER, WIDTH = 0.5, 1.0, 1.5, 1.0  # radii of two rings, and their width
-SIDES = ("fine", "coarse", "both", "dual fine", "dual coarse")  # whose nodes are secondary
+SIDES = ("fine", "coarse", "dual fine", "dual coarse")  # whose nodes are secondary
 FACES = {"blocks": {"a": "z_max", "b": "z_min"}, "rings": {"a": "outside", "b": "inside"}}
 
 
@@ -73,11 +73,7 @@ def ring(name, folder, radii, elements):
 
 def interface(side, faces, law, parameters):
     nodes, surface = (f"{body}.{faces[body]}" for body in ("ab" if side.endswith("coarse") else "ba"))
-    against = {"surface": surface}
-    if side == "both":
-        against["both_sides"] = True
-    if side.startswith("dual"):
-        against["discretization"] = "dual_mortar"
+    against = {"surface": surface, "discretization": "dual_mortar" if side.startswith("dual") else "node_to_facet"}
     return {"name": "joint", "law": law, "parameters": parameters, "nodes": nodes, "against": against}
 
 
@@ -129,13 +125,10 @@ def of_rings(case, coarse, fine, side, folder, keeps_gaps):
     return made
 
 
-def run(ilaw, case, coarse, fine, side, keeps_gaps, stiffness):
+def run(ilaw, case, coarse, fine, side, keeps_gaps):
     with tempfile.TemporaryDirectory() as folder:
         rings = case.startswith("ring")
         made = of_rings(case, coarse, fine, side, folder, keeps_gaps) if rings else of_blocks(case, coarse, fine, side)
-        if stiffness:
-            penalty = {"stiffness": stiffness, "integration": "implicit", "restitution": 0}
-            made["interfaces"][0].update(law="penalty", parameters=penalty)
         faces = FACES["rings" if rings else "blocks"]
         made["output"] = {"watch": [f"{body}.{face}" for body, face in faces.items()],
                           "every": 1000000 if "damping" in str(made.get("loads")) else 1}
@@ -176,17 +169,14 @@ def main():
     parser.add_argument("--cases", nargs="+", default=["impact", "at rest", "sliding", "ring, wave", "ring, at rest"])
     parser.add_argument("--sides", nargs="+", default=SIDES, choices=SIDES)
     parser.add_argument("--keep-gaps", action="store_true", help="of the facets of rings, at the start")
-    parser.add_argument("--penalty", type=float, help="implicit springs of this stiffness per node instead of contact")
-    parser.add_argument("--append", type=Path, help="a table of docs/results to which the rows are added")
     arguments = parser.parse_args()
-    law = f"penalty {arguments.penalty:.0e}".replace("e+0", "e") if arguments.penalty else "contact"
     pressure_rows, error_rows = [], []
     for case in arguments.cases:
         for mesh in arguments.meshes:
             coarse, fine = map(int, mesh.split(":"))
             pressures, errors, sweeps, seconds, unsolved = [], [], {}, {}, {}
             for side in arguments.sides:
-                summary, rows = run(arguments.ilaw, case, coarse, fine, side, arguments.keep_gaps, arguments.penalty)
+                summary, rows = run(arguments.ilaw, case, coarse, fine, side, arguments.keep_gaps)
                 p, u = fields(case, rows, coarse, fine)
                 off = abs(p - 1).max()
                 pressures.append(f"{p.min():.3f} to {p.max():.3f}" if off > 1e-3 else f"1, to {off:.0e}")
@@ -201,11 +191,6 @@ def main():
                               f"{', '.join(f'{seconds[side] / seconds[arguments.sides[0]]:.1f}' for side in arguments.sides[1:])} | "
                               f"{', '.join(str(unsolved[side]) for side in arguments.sides)} of {summary['steps']} |")
             print(pressure_rows[-1], error_rows[-1], flush=True)
-            if arguments.append:
-                with arguments.append.open("a") as table:
-                    print(case, f"{coarse} on {fine}", law, *(p.replace("1, to", "exact to") for p in pressures),
-                          " / ".join(errors), " / ".join(f"{sweeps[side]:.0f}" for side in arguments.sides),
-                          sep=",", file=table)
     names = " | ".join(arguments.sides)
     print(f"\n| case | elements | {names} |", *pressure_rows, sep="\n")
     print(f"\n| case | elements | {names} | iterations | time over the first | unsolved |", *error_rows, sep="\n")

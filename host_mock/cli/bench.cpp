@@ -23,13 +23,12 @@ using nlohmann::json;
 
 struct BenchOptions {
   std::vector<std::string> laws, case_files;
-  std::string parameters = "{}";
+  std::string law, parameters = "{}";
   std::filesystem::path folder;
   std::vector<std::int64_t> nodes = {1000, 10000000};
   std::vector<std::vector<std::string>> words{bench_words().size()};  // of bench_words, in their order
-  BenchCase base;
   int repetitions = 7;
-  bool as_json = false;
+  bool floats = false, as_json = false;
 };
 
 // Libraries of this run, opened once.
@@ -57,7 +56,7 @@ auto naming_entry(const BenchCase& bench_case, Work&& work) {
   try {
     return work();
   } catch (const std::runtime_error& refusal) {
-    throw InputError(bench_case.entry + refusal.what());
+    throw InputError(bench_case.where + refusal.what());
   }
 }
 
@@ -72,38 +71,35 @@ std::vector<BenchCase> with_laws(BenchCase bench_case, Libraries& libraries) {
   return cases;
 }
 
-std::vector<BenchCase> cases_of_file(const std::string& file, const std::string& wanted,
-                                     Libraries& libraries) {
-  std::vector<BenchCase> cases;
-  for (const BenchCase& entry : read_bench_cases(file))
-    for (const BenchCase& one : naming_entry(entry, [&] { return with_laws(entry, libraries); }))
-      if (wanted.empty() || one.law == wanted) cases.push_back(one);
-  return cases;
+// The options make an entry for each law or library that is named; then come those of files.
+std::vector<BenchEntry> entries_of(const BenchOptions& options) {
+  std::vector<BenchEntry> entries;
+  json given = {{"parameters", parameters_of(options)}, {"float", options.floats}};
+  if (!options.law.empty()) given["law"] = options.law;
+  for (std::size_t k = 0; k < options.words.size(); ++k)
+    if (!options.words[k].empty()) given[bench_words()[k].key] = options.words[k];
+  for (const std::string& name : options.laws) {
+    given["library"] = name;
+    entries.push_back({given, ""});
+  }
+  for (const std::string& file : options.case_files) {
+    const std::vector<BenchEntry> more = read_bench_entries(file);
+    entries.insert(entries.end(), more.begin(), more.end());
+  }
+  return entries;
 }
 
 std::vector<BenchCase> cases_of(const BenchOptions& options, Libraries& libraries) {
   std::vector<BenchCase> cases;
-  BenchCase base = options.base;
-  base.parameters = parameters_of(options);
-  for (const std::string& name : options.laws) {
-    base.library = name;
-    if (!base.law.empty() && !libraries.open(name).law(base.law))
-      throw InputError("--law: found '" + base.law + "', which is not in " + libraries.open(name).path());
-    for (const BenchCase& one : with_laws(base, libraries)) {
-      const std::vector<BenchCase> more = combinations(one, options.words);
-      cases.insert(cases.end(), more.begin(), more.end());
-    }
-  }
-  for (const std::string& file : options.case_files) {
-    const std::vector<BenchCase> more = cases_of_file(file, options.base.law, libraries);
-    cases.insert(cases.end(), more.begin(), more.end());
-  }
+  for (const BenchEntry& entry : entries_of(options))
+    for (const BenchCase& one : cases_of(entry))
+      naming_entry(one, [&] {
+        for (const BenchCase& own : with_laws(one, libraries))
+          if (const ilaw_law* law = libraries.open(own.library).law(own.law);
+              options.law.empty() || own.law == options.law)
+            cases.push_back(law ? with_required_parameters(own, *law) : own);
+      });
   if (cases.empty()) throw InputError("found nothing to measure, expected a law, a library or --cases");
-  for (BenchCase& one : cases)
-    naming_entry(one, [&] {
-      if (const ilaw_law* law = libraries.open(one.library).law(one.law))
-        one = with_required_parameters(one, *law);
-    });
   return cases;
 }
 
@@ -177,25 +173,19 @@ void add_bench(CLI::App& app, int& code) {
   CLI::App* command = app.add_subcommand(
       "bench", "Measure the time of a law per node, beside a triad of arrays in the same run");
   command->add_option("laws", options->laws, "Names of laws, or paths of libraries");
-  command->add_option("--law", options->base.law, "Only this law of the libraries");
+  command->add_option("--law", options->law, "Only this law of the libraries");
   command->add_option("--nodes", options->nodes, "Numbers of nodes of a batch")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
       ->delimiter(',')
       ->capture_default_str();
   add_words(*command, *options);
-  command->add_option("--touching", options->base.touching, "Share of the nodes whose gap is closed")
-      ->check(number_from(0.0, 1.0))
-      ->capture_default_str();
-  command->add_option("--pressed", options->base.pressed, "Share of those that approach")
-      ->check(number_from(0.0, 1.0))
-      ->capture_default_str();
   command->add_option("--parameters", options->parameters,
                       "In JSON, as in a scene; {\"per_node\": value} gives it per node. Where one is missing "
                       "that the law requires, a plain value of its range is taken");
   command->add_option(
       "--cases", options->case_files,
       "Files of cases: what their section \"benchmarks\" lists, instead of the options above");
-  command->add_flag("--float", options->base.floats, "Arrays of float");
+  command->add_flag("--float", options->floats, "Arrays of float");
   command->add_option("--repetitions", options->repetitions, "Repetitions, for medians")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

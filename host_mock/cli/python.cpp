@@ -75,8 +75,8 @@ void become_python(const CLI::App& command, const PythonModule& module) {
                            "; install it with `apt-get install " + module.debian_packages + "`");
 }
 
-void run_in_python(CLI::App& command, const PythonModule& module, const std::shared_ptr<void>& kept) {
-  command.callback([=, &command, kept = kept] { become_python(command, module); });
+void run_in_python(CLI::App& command, const PythonModule& module) {
+  command.callback([&command, module] { become_python(command, module); });
 }
 
 }  // namespace ilaw::host

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <memory>
 #include <string>
 
 namespace ilaw::host {
@@ -16,7 +15,7 @@ struct PythonModule {
 // Becomes a module of share/ilaw/python with the options and arguments that the user gave to the command, in
 // the first Python that has the packages. Throws if there is none, with the Debian packages to install.
 [[noreturn]] void become_python(const CLI::App& command, const PythonModule& module);
-// Makes a command do so. kept: what the options are bound to.
-void run_in_python(CLI::App& command, const PythonModule& module, const std::shared_ptr<void>& kept);
+// Makes a command do so.
+void run_in_python(CLI::App& command, const PythonModule& module);
 
 }  // namespace ilaw::host

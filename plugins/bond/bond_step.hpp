@@ -183,7 +183,7 @@ class bond_step {
       if constexpr (couples)
         rub(m, n, contact, friction);
       else
-        sticks = m.rubs & (apply_isotropic_friction(n, contact, friction) == status::stick);
+        sticks = m.rubs & (apply_isotropic_friction(n, contact, friction, 0.0) == status::stick);
       n.impulse = select(m.rubs, n.impulse, {pressing, 0.0, 0.0});
     }
     m.contact = zero_unless(m.closed, n.impulse);

@@ -41,8 +41,10 @@ class ScenesPage(unittest.TestCase):
         self.assertEqual(warnings, "")
         sliding = [row for row in rows if 0.01 < row["time"] < 0.025]
         for row in sliding:
-            self.assertAlmostEqual(row["joint.F2"], 40, delta=2)
-            self.assertAlmostEqual(row["joint.F0"], -12, delta=1)
+            lifts = row["time"] > 0.018  # the trailing edge, now and then
+            self.assertAlmostEqual(row["joint.F2"], 40, delta=3 if lifts else 0.5)
+            self.assertAlmostEqual(row["joint.F0"], -12, delta=1.2 if lifts else 0.15)
+        self.assertAlmostEqual(sum(row["joint.F2"] for row in sliding) / len(sliding), 40, delta=0.02)
 
 
 if __name__ == "__main__":

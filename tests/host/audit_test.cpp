@@ -33,9 +33,11 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Planted{"other_start", "0, time 0: node 1, interface 'floor' (law 'broken'): impulse: found "},
         Planted{"other_answer", "3, time 3: node 1, interface 'floor' (law 'broken'): impulse: found "},
+        Planted{"other_digits", "3, time 3: node 1, interface 'floor' (law 'broken'): impulse: found "},
         Planted{"other_gap", "3, time 3: node 1, interface 'floor' (law 'broken'): impulse: found "},
         Planted{"pull", "3, time 3: node 1, interface 'floor' (law 'broken'): cone: the impulse -1 pulls"},
         Planted{"lets_in", "4, time 4: node 1, interface 'floor' (law 'broken'): gap: it is "},
+        Planted{"creeps_in", "4, time 4: node 1, interface 'floor' (law 'broken'): gap: it is "},
         Planted{"other_energy", "3, time 3: interface 'floor' (law 'broken'): energy: part "}),
     [](const auto& drawn) { return std::string(drawn.param.broken); });
 

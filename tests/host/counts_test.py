@@ -26,7 +26,7 @@ def strips(n, apart, slip):
                 {"name": "floor", "law": "contact", "nodes": "lower.z_min",
                  "obstacle": {"type": "plane", "point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0]}},
                 {"name": "between", "law": "coulomb", "parameters": {"friction": 0.3}, "nodes": "upper.z_min",
-                 "against": {"surface": "lower.z_max"}}]}
+                 "against": {"surface": "lower.z_max", "discretization": "node_to_facet"}}]}
 
 
 def counts_of(scene):

@@ -11,7 +11,8 @@ TEST(NodeToFacet, GapIsContinuousAcrossFacetsAndOpenBeyondTheBorder) {
       0.4, 0.5,
       scene_of_blocks({block("a", {0, 0, 0}, {1, 1, 0.5}, {4, 4, 1}, elastic(100, 0.2, 1)),
                        block("b", {0.3, 0.3, 0.6}, {0.2, 0.2, 0.2}, {1, 1, 1}, elastic(50, 0.3, 1))},
-                      {law_between("b.z_min", {{"surface", "a.z_max"}}, "contact")})));
+                      {law_between("b.z_min", {{"surface", "a.z_max"}, {"discretization", "node_to_facet"}},
+                                   "contact")})));
   Interface& interface = *scene.interfaces[0];
   const Counterpart& counterpart = *interface.setup().counterpart;
   Dofs u = Dofs::Zero(scene.model->mass().size());

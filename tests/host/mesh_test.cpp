@@ -308,7 +308,7 @@ TEST(Mesh, TrianglesInterpolateTheirCorners) {
   const double height = 0.05;
   json source = scene_of_blocks(
       {block("b", {0.41, 0.13, 0.9 + height}, {1.43, 0.97, 0.2}, {5, 4, 1}, elastic(1, 0, 1))},
-      {law_between("b.z_min", {{"surface", "m.z_max"}}, "contact")});
+      {law_between("b.z_min", {{"surface", "m.z_max"}, {"discretization", "node_to_facet"}}, "contact")});
   source["model"]["type"] = "solids";
   source["model"]["meshes"] = {{{"name", "m"}, {"file", file.path()}, {"material", elastic(1, 0, 1)}}};
   const Scene scene = scene_of(until_at_cfl(1, 0.9, source));

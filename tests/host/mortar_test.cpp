@@ -59,8 +59,7 @@ json on_a_plate(const MeshFile& plate, const MeshFile& cube, bool cube_is_main, 
   source["time"] = {{"cfl", 0.7}, {"end", 0.07}};
   source["interfaces"] = {named("face", law)};
   source["interfaces"][0]["nodes"] = cube_is_main ? "a.top" : "b.bottom";
-  source["interfaces"][0]["against"] = {{"surface", cube_is_main ? "b.bottom" : "a.top"},
-                                        {"discretization", "dual_mortar"}};
+  source["interfaces"][0]["against"] = {{"surface", cube_is_main ? "b.bottom" : "a.top"}};
   source["output"] = {{"forces", {"face"}}};
   return source;
 }
@@ -133,23 +132,38 @@ TEST(EdgeRows, CountInTheForceOfTheirInterface) {
   EXPECT_NEAR(impulses[1] - impulses[0], after - before, 1e-12 * -before);
 }
 
-// Bonds need no edge rows: they pull. Values per node belong to the secondary nodes.
+Scene of_two_blocks(json law) {
+  law["nodes"] = "b.z_min";
+  law["against"] = {{"surface", "a.z_max"}};
+  const json blocks =
+      scene_of_blocks({block("a", {0, 0, 0}, {1, 1, 0.5}, {3, 3, 2}, elastic(1e6, 0.0, 1000)),
+                       block("b", {0, 0, 0.5}, {1, 1, 0.5}, {5, 5, 2}, elastic(1e6, 0.0, 1000))},
+                      {law});
+  return scene_of(until_at_cfl(0.8, 0.9, blocks));
+}
+
+// Bonds need no edge rows: they pull.
 TEST(EdgeRows, AreMadeForLawsThatCannotPull) {
-  const auto count = [](json law) {
-    law["nodes"] = "b.z_min";
-    law["against"] = {{"surface", "a.z_max"}, {"discretization", "dual_mortar"}};
-    const json blocks =
-        scene_of_blocks({block("a", {0, 0, 0}, {1, 1, 0.5}, {3, 3, 2}, elastic(1e6, 0.0, 1000)),
-                         block("b", {0, 0, 0.5}, {1, 1, 0.5}, {5, 5, 2}, elastic(1e6, 0.0, 1000))},
-                        {law});
-    return scene_of(until_at_cfl(0.8, 0.9, blocks)).interfaces.size();
+  EXPECT_EQ(of_two_blocks(in_contact()).interfaces.size(), 2u);
+  EXPECT_EQ(of_two_blocks(with_friction(0.3)).interfaces.size(), 2u);
+  EXPECT_EQ(of_two_blocks({{"law", "tie"}}).interfaces.size(), 1u);
+}
+
+TEST(EdgeRows, HaveTheValueOfTheClosestSecondaryNode) {
+  const auto friction_at = [](double x, double y) {
+    return 0.1 + 0.01 * std::round(5 * x) + 0.001 * std::round(5 * y);
   };
-  EXPECT_EQ(count(in_contact()), 2u);
-  EXPECT_EQ(count(with_friction(0.3)), 2u);
-  EXPECT_EQ(count({{"law", "tie"}}), 1u);
-  json per_node = with_friction(0.3);
-  per_node["parameters"]["friction"] = {{"per_node", std::vector<double>(36, 0.3)}};
-  EXPECT_EQ(count(per_node), 1u);
+  json law = with_friction(0);
+  std::vector<double> values;
+  for (int k = 0; k < 36; ++k) values.push_back(friction_at(0.2 * (k / 6), 0.2 * (k % 6)));
+  law["parameters"]["friction"] = {{"per_node", values}};
+  const Scene scene = of_two_blocks(law);
+  const Interface& edges = *scene.interfaces.at(1);
+  ASSERT_EQ(edges.nodes().size(), 12u);
+  for (std::size_t k = 0; k < 12; ++k) {
+    const Vector at = scene.model->position(edges.nodes()[k]);
+    EXPECT_EQ(edges.parameters_of(static_cast<int>(k)).at(0), friction_at(at[0], at[1])) << k;
+  }
 }
 
 // The facets of the plate's upper side have the cube behind them, which is below the plate.

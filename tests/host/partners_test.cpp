@@ -50,27 +50,6 @@ TEST(Spring, JoinsNodesOfFacesThatFaceEachOther) {
   }
 }
 
-// Each side has half of the areas: a bond keeps its strength. The scene may be read again.
-TEST(NonMatchingMeshes, ShareAreasBetweenBothSides) {
-  json source = until_at_cfl(
-      0.1, 0.5,
-      scene_of_blocks({block("a", {0, 0, 0}, {1, 1, 1}, {2, 2, 1}, elastic(1, 0, 1)),
-                       block("b", {0, 0, 1}, {1, 1, 1}, {3, 3, 1}, elastic(1, 0, 1))},
-                      {named("joint", law_between("b.z_min", {{"surface", "a.z_max"}, {"both_sides", true}},
-                                                  "contact"))}));
-  for (int time = 0; time < 2; ++time) {
-    const Scene scene = read_scene(source, "joint.json");
-    source = scene.source;
-    ASSERT_EQ(scene.interfaces.size(), 2U);
-    EXPECT_EQ(scene.interfaces[1]->name(), "joint_other_side");
-    for (const auto& interface : scene.interfaces) {
-      double area = 0.0;
-      for (const double part : interface->setup().areas) area += part;
-      EXPECT_NEAR(area, 0.5, 1e-15) << interface->name();
-    }
-  }
-}
-
 // Watching makes no contact: contacts have the order of their nodes, of which steps make use.
 TEST(Watched, NodesAreContactsInTheirOrder) {
   auto [run, integrator] = simulation_of(R"({"model": {"type": "points", "dimension": 1,

@@ -4,7 +4,7 @@
 # another processor (tests/platforms/run.sh), and names the scenes that differ there.
 #
 # The column "differs" says where a scene has another state: "fma", on x86-64 without FMA, for which glibc has another
-# variant of log; "aarch64" and "ppc64le", where the host's solid elements round otherwise.
+# variant of log; or the name of a processor.
 import csv
 import json
 import os

@@ -163,8 +163,10 @@ std::set<std::string> motions_of(const json& scene) {
     const json obstacle = interface.value("obstacle", json::object());
     for (const char* key : {"path", "rate", "angles"})
       if (obstacle.contains(key)) found.insert(obstacle["type"].get<std::string>() + " " + key);
-    if (interface.contains("against"))
-      found.insert(model + (interface["against"].contains("surface") ? " surface" : " nodes"));
+    if (interface.contains("against") && interface["against"].contains("surface"))
+      found.insert(model + " " + interface["against"].value("discretization", "dual_mortar"));
+    else if (interface.contains("against"))
+      found.insert(model + " nodes");
   }
   for (const json& load : scene["loads"])
     if (load["type"] == "motion") found.insert(model + (load.contains("path") ? " driven" : " held"));
@@ -184,7 +186,8 @@ TEST(RandomScene, MovesAndMeetsInAllWaysThatThereAre) {
     ASSERT_EQ(scene["time"], plain["time"]);
     ASSERT_EQ(scene["interfaces"][0]["parameters"], plain["interfaces"][0]["parameters"]);
   }
-  std::set<std::string> wanted = {"points nodes", "bars nodes", "blocks nodes", "blocks surface"};
+  std::set<std::string> wanted = {"points nodes", "bars nodes", "blocks nodes", "blocks dual_mortar",
+                                  "blocks node_to_facet"};
   for (const std::string type : {"plane", "sphere", "cylinder"})
     for (const std::string key : {" path", " rate", " angles"}) wanted.insert(type + key);
   for (const std::string model : {"points", "bars", "blocks"})

@@ -6,7 +6,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stress/made_problem.hpp"
 
-#include "support/coupled_problem.hpp"
+#include "support/law_runner.hpp"
 #include "support/sizes.hpp"
 
 #include <chrono>
@@ -21,6 +21,7 @@ using ilaw::host::MadeAudit;
 using ilaw::host::MadeProblem;
 using ilaw::host::MadeSetup;
 
+using Numbers = std::map<std::string, double>;
 struct Law {
   std::string name;
   Numbers numbers;
@@ -56,6 +57,13 @@ std::vector<Kind> kinds() {
   const auto redundant = [](MadeSetup& s) { s.normals = MadeSetup::Normals::redundant; };
   const auto held = [](MadeSetup& s) { s.no_freedom = 0.3; };
   const auto turning = [](MadeSetup& s) { s.rotate = true; };
+  const auto facets = [](MadeSetup& s) { s.ends = 4; };
+  const auto axes = [](MadeSetup& s) { s.ends = 4, s.has_axes = true; };
+  const auto turning_facets = [](MadeSetup& s) { s.ends = 3, s.rotate = true; };
+  const std::vector<Law> rolling{{"rolling", {{"rolling_friction", 0.02}, {"twisting_friction", 0.01}}}};
+  const std::vector<Law> bouncing{{"contact", {{"restitution", 0.6}}},
+                                  {"coulomb", {{"restitution", 0.8}, {"tangential_restitution", 0.3}}}};
+  constexpr ilaw_delassus_form transverse = ILAW_DELASSUS_TRANSVERSE, spins = ILAW_DELASSUS_TRANSVERSE_SPIN;
   constexpr ilaw_delassus_form scalar = ILAW_DELASSUS_SCALAR, full = ILAW_DELASSUS_FULL;
   return {
       {"two_contacts", scalar, friction, sized(1, 2), 0.05},
@@ -72,12 +80,20 @@ std::vector<Kind> kinds() {
       {"held_axes", full, friction, with(sized(2, 4), held), 0.1},
       {"held_axes_many", full, friction, with(sized(20, 50), held), 0.45},
       {"turning", full, friction, with(sized(5, 12), turning), 0.1},
-      {"spheres", ILAW_DELASSUS_TRANSVERSE, friction, sized(5, 12), 0.15},
-      {"rolling",
-       ILAW_DELASSUS_TRANSVERSE_SPIN,
-       {{"rolling", {{"rolling_friction", 0.02}, {"twisting_friction", 0.01}}}},
-       sized(5, 12),
-       0.15},
+      {"spheres", transverse, friction, sized(5, 12), 0.15},
+      {"rolling", spins, rolling, sized(5, 12), 0.15},
+      {"facets", scalar, friction, with(sized(12, 12), facets), 0.1},
+      {"facets_of_axes", full, friction, with(sized(12, 12), axes), 0.1},
+      {"facets_that_turn", full, friction, with(sized(9, 12), turning_facets), 0.1},
+      {"bouncing", scalar, {bouncing[0]}, sized(5, 12), 0.1},
+      {"bouncing_spheres", transverse, bouncing, sized(5, 12), 0.1},
+      {"impacts", scalar, {{"impact", {{"restitution", 0.7}}}}, sized(5, 9), 0.3},
+      {"one_point", scalar, friction, sized(2, 1), 0.0},
+      {"one_turning", full, friction, with(sized(2, 1), turning), 0.0},
+      {"one_sphere", transverse, friction, sized(2, 1), 0.0},
+      {"one_rolling", spins, rolling, sized(2, 1), 0.0},
+      {"one_facet", scalar, friction, with(sized(8, 1), facets), 0.0},
+      {"one_of_axes", full, friction, with(sized(8, 1), axes), 0.0},
       {"bonds", scalar, bonds, sized(5, 9), 0.1},
       {"softening", scalar, softening, sized(5, 12), 0.3},
       {"two_hundred", scalar, friction, sized(80, 200), 0.6},
@@ -86,8 +102,8 @@ std::vector<Kind> kinds() {
 
 ilaw::interface made_law(const Law& law, ilaw_delassus_form form, double mu) {
   Numbers numbers = law.numbers;
-  if (law.name == "coulomb" || law.name == "rolling") numbers["friction"] = mu;
-  return coupled_law(law.name, form, numbers);
+  if (law.name == "coulomb" || law.name == "rolling" || law.name == "impact") numbers["friction"] = mu;
+  return make_law(law.name, SetupBuilder({numbers, {}}, 3, form, ILAW_FRAME_GLOBAL));
 }
 
 int number(const char* name, int otherwise) {
@@ -141,6 +157,8 @@ TEST_P(MadeOf, IsSolvedInTheScaleOfItsInput) {
     ++counts.problems;
     counts.sweeps += report.sweeps;
     counts.opposed += report.law != nullptr;
+    // With its own H a contact alone is solved in the first iteration, and the second one sees that.
+    EXPECT_TRUE(kind.setup.contacts > 1 || report.sweeps <= 2) << k << ": " << report.sweeps;
     counts.momentum += !report.message && found.momentum > 1e-9;
     counts.work += found.work > 1e-9;
     if (report.message)
@@ -158,7 +176,7 @@ TEST_P(MadeOf, IsSolvedInTheScaleOfItsInput) {
       "%-16s %6d problems: wrong %d (%.1e), momentum %d, work %d, opposed %d, unsolved %d; %.1f iterations, %.2f s\n",
       kind.name.c_str(), counts.problems, counts.wrong, counts.worst, counts.momentum, counts.work,
       counts.opposed, counts.unsolved, counts.sweeps / counts.problems, seconds);
-  EXPECT_LE(counts.ill_posed, 0.05 * problems);
+  EXPECT_LE(counts.ill_posed, 0.1 * problems);  // most of them with restitution
   EXPECT_EQ(counts.wrong, 0);
   EXPECT_EQ(counts.momentum, 0);
   EXPECT_EQ(counts.work, 0);
@@ -234,96 +252,6 @@ TEST(Made, TogetherAreAsEachAlone) {
     }
   EXPECT_GT(unsolved, 0);
   EXPECT_GE(unsolved, stalled);
-}
-
-// A column that falls all the time has not stalled, whatever is solved beside it.
-TEST(Made, ColumnHasNotStalledBesideOthers) {
-  for (const std::int32_t more : {0, 2}) {
-    constexpr std::int32_t count = 200;
-    CoupledProblem column(coupled_law("contact", ILAW_DELASSUS_SCALAR), ILAW_DELASSUS_SCALAR, count + more);
-    for (std::int32_t i = 0; i < count + more; ++i) {
-      column.body[static_cast<std::size_t>(i)].v =
-          column.body[static_cast<std::size_t>(i)].v_before = {0.0, 0.0, -1e-2};
-      column.touch(i, i >= count ? -1 : i - 1, {0.0, 0.0, 1.0});
-    }
-    column.options.most_sweeps = 120;
-    const ilaw_coupled_report report = column.solve();
-    EXPECT_EQ(report.stalled, 0U) << more;
-    EXPECT_GT(report.residual, 1e-10) << more;
-    EXPECT_EQ(report.island_contacts, count) << more;
-  }
-}
-
-// A body that cannot move along x, against a wall; what the solver says of it.
-std::string said_of_held(CoupledProblem& held, const Vector& n, const Vector& v) {
-  held.rotates = false;
-  held.masses_per_axis = true;
-  held.body[0].inverse_mass = {0.0, 0.0, 1.0};
-  held.body[0].v = held.body[0].v_before = v;
-  held.touch(0, -1, n);
-  try {
-    const ilaw_coupled_report report = held.solve();
-    return report.message ? report.message : "";
-  } catch (const ilaw::error& refused) {
-    EXPECT_EQ(refused.code(), ILAW_INVALID_ARGUMENT);
-    return refused.what();
-  }
-}
-
-TEST(CoupledHeld, IsRefusedByNameWhereALawMustPushIt) {
-  const std::string refusal = "contact 0 of group 0: body 0 cannot move along ", law = ", and the law '",
-                    end = "' must push it";
-  for (const char* name : {"coulomb", "contact", "tie"}) {
-    CoupledProblem held(made_law({name, {}}, ILAW_DELASSUS_FULL, 0.3), ILAW_DELASSUS_FULL, 1);
-    EXPECT_EQ(said_of_held(held, {1.0, 0.0, 0.0}, {-1.0, 0.0, 0.25}),
-              refusal + "its normal" + law + name + end);
-  }
-  CoupledProblem tied(coupled_law("tie", ILAW_DELASSUS_FULL), ILAW_DELASSUS_FULL, 1);
-  EXPECT_EQ(said_of_held(tied, {0.0, 0.0, 1.0}, {0.5, 0.0, -1.0}), refusal + "axis 0" + law + "tie" + end);
-}
-
-TEST(CoupledHeld, HasFrictionAlongTheAxis) {
-  for (const double slip : {0.5, -2.0}) {
-    CoupledProblem held(made_law({"coulomb", {}}, ILAW_DELASSUS_FULL, 0.3), ILAW_DELASSUS_FULL, 1);
-    EXPECT_EQ(said_of_held(held, {0.0, 0.0, 1.0}, {slip, 0.0, -1.0}), "");
-    EXPECT_NEAR(held.contact[0].impulse[2], 1.0, 1e-12);
-    EXPECT_NEAR(held.contact[0].impulse[0], std::copysign(0.3, -slip), 1e-12);
-    EXPECT_EQ(held.body[0].v[0], slip);
-    EXPECT_NEAR(held.body[0].v[2], 0.0, 1e-12);
-  }
-}
-
-// A point of 1 kg falls between two walls whose normals rise by an angle over the horizontal: it is pressed
-// by both where both gaps close, slips down with a = gap/(h sin), and r_n = (v - a)/(2 (sin + mu cos)).
-TEST(CoupledGroove, HasTheForceOfItsClosedForm) {
-  int problems = 0;
-  for (const double degrees : {2.0, 10.0, 30.0, 45.0, 60.0, 80.0})
-    for (const double mu : {0.1, 0.3, 0.6, 1.0, 2.0})
-      for (const double gap : {0.0, 6.5e-13, 1e-10, 1e-8})
-        for (const double speed : {1e-3, 0.01, 1.0}) {
-          const double angle = degrees * 3.14159265358979323846 / 180.0, sine = std::sin(angle),
-                       cosine = std::cos(angle), h = 1e-5, a = gap / (h * sine);
-          if (!(a < speed) || mu * std::tan(angle) > 0.9) continue;  // one wall may hold it
-          GIVEN(degrees, mu, gap, speed);
-          ++problems;
-          CoupledProblem groove(made_law({"coulomb", {}}, ILAW_DELASSUS_SCALAR, mu), ILAW_DELASSUS_SCALAR);
-          CoupledProblem::Body point;
-          point.mass = 1.0;
-          point.v = point.v_before = {0.0, 0.0, -speed};
-          groove.add_body(point);
-          groove.h = h;
-          for (const double side : {1.0, -1.0}) groove.touch(0, -1, {side * cosine, 0.0, sine}, gap);
-          const ilaw_coupled_report report = groove.solve();
-          EXPECT_EQ(report.law, nullptr);
-          EXPECT_EQ(report.message, nullptr);
-          EXPECT_LE(std::fabs(groove.body[0].v[2] + a) / speed, 1e-8);
-          const CoupledProblem::Contact& wall = groove.contact[0];
-          // With a gap it slips, so that impulses are unique.
-          EXPECT_TRUE(gap < 1e-15 || std::fabs(dot(wall.impulse, wall.normal) -
-                                               (speed - a) / (2.0 * (sine + mu * cosine))) <= 1e-6 * speed);
-          for (const CoupledProblem::Contact& c : groove.contact) EXPECT_LE(length(c.impulse), 100.0 * speed);
-        }
-  EXPECT_GT(problems, 100);
 }
 
 }  // namespace

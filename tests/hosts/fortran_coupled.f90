@@ -9,7 +9,7 @@ program fortran_coupled
   integer, parameter :: dp = c_double, most = 8
   real(dp), parameter :: h = 1e-3_dp, g = 10, radius = 0.5_dp
   real(dp) :: r(3, most), v(3, most), w(3, most)
-  integer :: k, calls ! of the exchange
+  integer :: k
 
   ! Masses 1, 2, ..., 8 from the floor up: contact k carries the weight of k to 8, and nothing moves.
   call step(most, 0._dp, 0.3_dp)
@@ -39,6 +39,7 @@ contains
     real(dp), target :: inverse_mass(count), inverse_inertia(count), before(3, count), still(3, count)
     real(dp), target :: up(3), down(3), over(3), gap(1), state(0, count)
     integer(c_int32_t), target :: body(count), counterpart(count)
+    integer(c_int32_t), target :: calls ! of the exchange, which alone has its address
     type(c_ptr) :: interface, solver
     type(ilaw_batch), target :: batch
     type(ilaw_bodies) :: bodies
@@ -85,6 +86,7 @@ contains
     options%most_sweeps = 20000
     options%tolerance = 1e-14_dp
     alone%sum_bodies = c_funloc(agree); alone%largest = c_funloc(agree); alone%sum = c_funloc(agree)
+    alone%context = c_loc(calls)
     calls = 0
     options%exchange = c_loc(alone)
     solver = ilaw_coupled_create()
@@ -97,13 +99,15 @@ contains
     w(:, :count) = spin
   end subroutine
 
-  ! One rank agrees with itself.
+  ! One rank agrees with itself, and counts how often it is asked.
   subroutine agree(context, values, count) bind(c)
     type(c_ptr), value :: context
     real(c_double), intent(inout) :: values(*)
     integer(c_int64_t), value :: count
-    if (count > 0 .and. .not. c_associated(context)) values(1) = values(1)
-    calls = calls + 1
+    integer(c_int32_t), pointer :: calls
+    call c_f_pointer(context, calls)
+    if (count > 0) calls = calls + 1
+    if (count < 0) values(1) = 0
   end subroutine
 
   type(c_ptr) function created(mu) result(interface)

@@ -138,22 +138,38 @@ contains
     says = index(message, part) > 0
   end function
 
+  ! An interface of a law whose H is one number. Fields are offered, of which template_c alone has the first.
+  subroutine create(law, dimension, frame, numbers, values, interface, code, message)
+    character(*), intent(in) :: law
+    integer(c_int32_t), intent(in) :: dimension, frame, numbers
+    type(ilaw_values), intent(inout) :: values
+    type(c_ptr), intent(out) :: interface
+    integer(c_int32_t), intent(out) :: code
+    character(*), intent(out) :: message
+    type(c_ptr) :: library
+    type(ilaw_setup) :: setup
+    code = ilaw_open(law, library, message)
+    if (code /= ILAW_OK) return
+    setup%dimension = dimension
+    setup%delassus_form = ILAW_DELASSUS_SCALAR
+    setup%frame = frame
+    setup%numbers = numbers
+    call ilaw_offer_field(library, '', 'temperature', values)
+    call ilaw_offer_field(library, law, 'humidity', values) ! no law has it
+    call ilaw_offer_field(library, '', 'partition', values) ! is no field
+    code = ilaw_create(library, '', setup, values, interface, message)
+    call ilaw_library_close(library)
+  end subroutine
+
   ! Creates coulomb; code and message are what the loader says.
   subroutine create_coulomb(values, frame, code, message, per_node_count)
-    type(ilaw_values), intent(in) :: values
+    type(ilaw_values), intent(inout) :: values
     integer(c_int32_t), intent(in) :: frame
     integer(c_int32_t), intent(out) :: code, per_node_count
     character(*), intent(out) :: message
-    type(c_ptr) :: library, interface
-    type(ilaw_setup) :: setup
+    type(c_ptr) :: interface
     type(ilaw_instance_info) :: info
-    code = ilaw_open('coulomb', library, message)
-    if (code /= ILAW_OK) return
-    setup%dimension = 3
-    setup%delassus_form = ILAW_DELASSUS_SCALAR
-    setup%frame = frame
-    code = ilaw_create(library, 'coulomb', setup, values, interface, message)
-    call ilaw_library_close(library)
+    call create('coulomb', 3_c_int32_t, frame, ILAW_NUMBERS_DOUBLE, values, interface, code, message)
     if (code == ILAW_OK) code = ilaw_interface_info(interface, info)
     per_node_count = info%per_node_parameter_count
     call ilaw_interface_destroy(interface)
@@ -180,7 +196,7 @@ contains
   end subroutine
 
   subroutine expect_created(values, of_nodes, what)
-    type(ilaw_values), intent(in) :: values
+    type(ilaw_values), intent(inout) :: values
     integer(c_int32_t), intent(in) :: of_nodes
     character(*), intent(in) :: what
     integer(c_int32_t) :: code, per_node_count
@@ -192,7 +208,7 @@ contains
   end subroutine
 
   subroutine expect_refused(values, one, other)
-    type(ilaw_values), intent(in) :: values
+    type(ilaw_values), intent(inout) :: values
     character(*), intent(in) :: one, other
     integer(c_int32_t) :: code, per_node_count
     character(200) :: message
@@ -201,28 +217,6 @@ contains
   end subroutine
 
   ! ---- fields, amounts and tables: template_c in two dimensions, local frame
-
-  ! Offers the temperature, and creates.
-  subroutine create_brake(values, numbers, interface, code, message)
-    type(ilaw_values), intent(inout) :: values
-    integer(c_int32_t), intent(in) :: numbers
-    type(c_ptr), intent(out) :: interface
-    integer(c_int32_t), intent(out) :: code
-    character(*), intent(out) :: message
-    type(c_ptr) :: library
-    type(ilaw_setup) :: setup
-    code = ilaw_open('template_c', library, message)
-    if (code /= ILAW_OK) return
-    setup%dimension = 2
-    setup%delassus_form = ILAW_DELASSUS_SCALAR
-    setup%frame = ILAW_FRAME_LOCAL
-    setup%numbers = numbers
-    call ilaw_offer_field(library, '', 'temperature', values)
-    call ilaw_offer_field(library, 'template_c', 'humidity', values) ! the law has none
-    call ilaw_offer_field(library, '', 'partition', values)          ! is no field
-    code = ilaw_create(library, '', setup, values, interface, message)
-    call ilaw_library_close(library)
-  end subroutine
 
   ! One step of all nodes in doubles; temperatures stand in a row of a wider array.
   subroutine brake(values, field, amount, r, heat, code, message)
@@ -244,7 +238,7 @@ contains
     gap = 0
     r = 0
     heat = 0
-    call create_brake(values, ILAW_NUMBERS_DOUBLE, interface, code, message)
+    call create('template_c', 2_c_int32_t, ILAW_FRAME_LOCAL, ILAW_NUMBERS_DOUBLE, values, interface, code, message)
     if (code /= ILAW_OK) return
     batch%v_free = ilaw_input_of(v)
     batch%v_previous = ilaw_input_of(v)
@@ -277,7 +271,7 @@ contains
     inverse_mass = real(1/mass, sp)
     gap = 0
     call values%set('friction', mu, 'slip_speed', speed, 'temperature', hot)
-    call create_brake(values, ILAW_NUMBERS_FLOAT, interface, code, message)
+    call create('template_c', 2_c_int32_t, ILAW_FRAME_LOCAL, ILAW_NUMBERS_FLOAT, values, interface, code, message)
     if (code /= ILAW_OK) return
     batch%v_free = ilaw_input_of(v)
     batch%v_previous = ilaw_input_of(v)

@@ -4,8 +4,6 @@
 
 #include "support/small_batch.hpp"
 
-#include <utility>
-
 namespace ilaw::testing {
 namespace {
 
@@ -100,55 +98,6 @@ TEST(StateVariables, StandInTheOrderOfTheirEntries) {
     for (std::size_t c = 0; c < 2; ++c)
       EXPECT_EQ(slip[c], 1e-3 * (nodes.v[c + 1] + nodes.r[i][c + 1])) << i << ", " << c;
   }
-}
-
-// Steps of nodes that press and are torn apart, whose states go from one layout into the other and back.
-std::vector<double> states_after_steps(const ilaw::interface& law, bool in_by_component,
-                                       bool out_by_component) {
-  constexpr std::size_t count = 37;
-  const std::size_t size = law.info().state_size;
-  std::vector<double> in(count * size), out(count * size), v(count), r(count), gap(count);
-  const auto strides = [&](bool by_component) {
-    return by_component ? std::pair{1, static_cast<int>(count)} : std::pair{static_cast<int>(size), 1};
-  };
-  const auto [in_node, in_component] = strides(in_by_component);
-  const auto [out_node, out_component] = strides(out_by_component);
-  const double h = 1.0;
-  ilaw_batch b{};
-  b.struct_size = sizeof b;
-  b.node_count = count;
-  b.velocity_step = b.position_step = 0x1p-7;
-  b.v_free = b.v_previous = ilaw::input(v.data(), 1, 1);
-  b.gap = ilaw::input(gap.data(), 1, 0);
-  b.delassus = ilaw::input(&h, 0, 0);
-  b.impulse = ilaw::output(r.data(), 1, 1);
-  b.state_out = ilaw::output(in.data(), in_node, in_component);
-  EXPECT_EQ(law.initialise(b), ILAW_OK);
-  b.state_in = ilaw::input(in.data(), in_node, in_component);
-  b.state_out = ilaw::output(out.data(), out_node, out_component);
-  for (int step = 1; step <= 40; ++step) {
-    b.time = step * b.velocity_step;
-    for (std::size_t i = 0; i < count; ++i) v[i] = std::sin(0.3 * step + 0.7 * static_cast<double>(i));
-    EXPECT_EQ(law.evaluate(b), ILAW_OK);
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t c = 0; c < size; ++c)
-        in[i * static_cast<std::size_t>(in_node) + c * static_cast<std::size_t>(in_component)] =
-            out[i * static_cast<std::size_t>(out_node) + c * static_cast<std::size_t>(out_component)];
-  }
-  std::vector<double> states;  // node by node
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t c = 0; c < size; ++c)
-      states.push_back(
-          out[i * static_cast<std::size_t>(out_node) + c * static_cast<std::size_t>(out_component)]);
-  return states;
-}
-
-TEST(History, MayHaveAnotherLayoutAfterTheStep) {
-  const ilaw::interface law = make_law("postit", SetupBuilder({{{"memory", 0.1}, {"buckets", 8}}, {}}, 1));
-  const std::vector<double> expected = states_after_steps(law, false, false);
-  EXPECT_GT(*std::max_element(expected.begin(), expected.end()), 0.0);
-  for (const bool in : {false, true})
-    for (const bool out : {false, true}) EXPECT_EQ(states_after_steps(law, in, out), expected) << in << out;
 }
 
 }  // namespace

@@ -41,27 +41,10 @@ ilaw_setup setup_1d() {
   return setup;
 }
 
-// Other mistakes of a description: description_test.cpp.
-TEST(RefusedLibrary, IsNamedWithWhatWasFoundAndExpected) {
-  for (const auto& [name, found_and_expected] :
-       {std::pair{"other_major_symbol", "a library for ABI major version 2, expected major version 1"},
-        {"no_entry", "not a law library: the symbol ilaw_plugin_v1 is missing"},
-        {"null_title", "law 'zero': title is null, expected a text"}}) {
-    const auto [code, message] = refusal_of(variant(name));
-    EXPECT_EQ(code, ILAW_BAD_LIBRARY) << name;
-    EXPECT_EQ(message, fs::canonical(variant(name)).string() + ": " + found_and_expected);
-  }
-}
-
+// Other files that are refused: refusals.json.
 TEST(Loader, RefusesFilesThatAreNoLibraries) {
   const TemporaryFolder made;
   const fs::path& folder = made.path;
-  const std::string text = (folder / "text.so").string();
-  std::ofstream(text) << "hello, this is a text and quite long enough to hold an ELF header of 64 bytes";
-  EXPECT_EQ(refusal_of(text).second,
-            text + ": not an ELF file, expected a whole ELF shared library for this machine");
-  EXPECT_THAT(refusal_of(folder.string()).second, HasSubstr(": a folder, expected"));
-  EXPECT_EQ(refusal_of((folder / "none.so").string()).first, ILAW_NOT_FOUND);
   const std::string pipe = (folder / "pipe.so").string(), huge = (folder / "huge.so").string();
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_THAT(refusal_of(pipe).second, HasSubstr(": not a regular file, expected"));
@@ -295,42 +278,6 @@ TEST(Search, GoesOnUntilTheVisitorHasSeenEnough) {
   EXPECT_EQ(ilaw_search_path(nullptr, 0), ilaw::search_path().size() + 1);
   EXPECT_EQ(ilaw_search_path(text, sizeof text), ilaw::search_path().size() + 1);
   EXPECT_EQ(text, ilaw::search_path().substr(0, 7));
-}
-
-TEST(Search, NamesTheVariableWhereItIsNotSet) {
-  const std::string hint = "; ILAW_PATH adds folders by their absolute paths";
-  unsetenv("ILAW_PATH");
-  EXPECT_THAT(refusal_of("nowhere").second, HasSubstr(hint));
-  setenv("ILAW_PATH", "/nowhere", 1);
-  EXPECT_THAT(refusal_of("nowhere").second, Not(HasSubstr(hint)));
-}
-
-TEST(Search, NeverLooksInTheCurrentFolder) {
-  const FolderWith folder("local");
-  const fs::path before = fs::current_path();
-  fs::current_path(folder.path);
-  for (const char* path : {"", ":", ".", "./", ".:"}) {
-    setenv("ILAW_PATH", path, 1);
-    const auto [code, message] = refusal_of("local");
-    EXPECT_EQ(code, ILAW_NOT_FOUND) << "ILAW_PATH=" << path;
-    EXPECT_THAT(message, StartsWith("'local': no local.so found, expected it in one of: /"));
-  }
-  const std::string as_file = refusal_of("local.so").second,
-                    hint = "; the path of a file has a '/', as ./local.so";
-  EXPECT_THAT(as_file, HasSubstr(hint));
-  EXPECT_EQ(refusal_of("./local.so").first, ILAW_OK);  // an explicit path is the user's word
-  fs::current_path(before);
-  unsetenv("ILAW_PATH");
-}
-
-TEST(Search, SuggestsTheNearestLibrary) {
-  const FolderWith folder("spring");
-  setenv("ILAW_PATH", folder.path.c_str(), 1);
-  for (const char* name : {"sprin", "springs", "srping.so", "Spring"})
-    EXPECT_THAT(refusal_of(name).second, HasSubstr(" (did you mean 'spring'?)")) << name;
-  for (const char* name : {"spr", "string_of", "ring_s"})
-    EXPECT_THAT(refusal_of(name).second, Not(HasSubstr("did you mean"))) << name;
-  unsetenv("ILAW_PATH");
 }
 
 bool loaded(const std::string& file) {

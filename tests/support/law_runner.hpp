@@ -190,17 +190,4 @@ struct NodeRun {
   std::vector<double> state, amounts;
 };
 
-// Whether another law with the inputs of the node gives the same bits.
-inline ::testing::AssertionResult step_alike(NodeRun& node, NodeRun& other, const Vector& v_free) {
-  other.gap = node.gap;
-  other.h = node.h;
-  for (NodeRun* each : {&node, &other})
-    if (each->step(v_free) != ILAW_OK) return ::testing::AssertionFailure() << each->report.reason;
-  if (node.r == other.r && node.status == other.status) return ::testing::AssertionSuccess();
-  return ::testing::AssertionFailure()
-         << ::testing::PrintToString(node.r) << ", status " << int{node.status} << ", not "
-         << ::testing::PrintToString(other.r) << ", status " << int{other.status} << ", for v_free "
-         << ::testing::PrintToString(v_free) << ", gap " << node.gap;
-}
-
 }  // namespace ilaw::testing

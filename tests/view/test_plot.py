@@ -6,6 +6,7 @@ import os
 import resource
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -176,6 +177,15 @@ def test_several_runs_have_a_legend_of_what_differs(tmp_path):
     assert plot(folders[0], "--x", "n0.u0", "--y", "floor.F0").returncode == 0
     text = (folders[0] / "floor.F0_over_n0.u0.svg").read_text()
     assert "force floor x" in text and "displacement node 0 x" in text
+
+
+def test_a_legend_names_up_to_three_differences():
+    def legends(keys):
+        runs = [SimpleNamespace(scene=dict.fromkeys(keys, value), folder=Path(f"run{value}")) for value in (1, 2)]
+        return ilaw_plot.legends_of([SimpleNamespace(run=one) for one in runs])
+
+    assert legends("abc") == ["a=1 b=1 c=1", "a=2 b=2 c=2"]
+    assert legends("abcd") == legends("") == ["run1", "run2"]
 
 
 @pytest.mark.parametrize(

@@ -186,6 +186,21 @@ def test_scenes_without_a_closed_form_are_refused():
         "mass_on_a_stop", "bouncing_ball_e08", "bouncing_ball_e1"} | {"bouncing_ball"}  # fmt: skip
 
 
+def test_closed_forms_move_by_their_velocities():
+    """Positions are integrals of velocities; an instant at which these jump costs a small step of the integral."""
+    steps, jumps = 40000, 20
+    for name in SCENES:
+        scene = shipped(name)
+        if "exact" not in scene or name == "mass_on_a_stop":  # which is impact_oscillator for several laws
+            continue
+        end = scene["time"]["end"]
+        exact = exact_solution(scene, len(scene["output"]["watch"]), steps_of(end, 1e-3), 1e-3)
+        time = np.linspace(0.0, end, steps + 1)
+        u, v = exact.u(time), exact.v(0.5 * (time[1:] + time[:-1]))
+        off = np.abs(u[1:] - u[0] - np.cumsum(v, axis=0) * end / steps).max()
+        assert off <= jumps * np.abs(v).max() * end / steps, name
+
+
 # ---- ilaw converge ----------------------------------------------------------------------------------------------------
 
 

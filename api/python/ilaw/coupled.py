@@ -215,7 +215,8 @@ class Contacts(NotCopied):
     wall_spin, wall_spin_previous (k, 3) [1/s]  where H has spins: subtracted from the contact's spin, which is that
                                     of the body less that of the counterpart
     body (k, b), counterpart (k, c) with body_weight (k, b), counterpart_weight (k, c): weighted sets of bodies, such
-                                    as facets; -1: no body
+                                    as facets; -1: no body. Weights (k, b, d, d) are matrices, of nodes with axes
+                                    of their own
     Outputs, made here or given: impulse (k, d) [N.s], which the sweeps also begin with: leave there what the last
     step left, and zero at new contacts; moment (k, 3) [N.m.s] likewise, where H has spins: it acts on the body, its
     opposite on the counterpart; state (k, state_size); energy (k, 4) [J]: True or an array to have it; status (k,),
@@ -272,6 +273,9 @@ class Contacts(NotCopied):
             made.read(name, value, 3, self._struct)
         weights = {"body_weight": body_weight, "counterpart_weight": counterpart_weight}
         for (name, value), entries in zip(weights.items(), self._sides):
+            if np.ndim(value) == 4:
+                self._struct.weight_size = d * d
+                value, entries = np.reshape(value, (count, -1)), entries * d * d
             made.read(name, value, entries, self._struct)
         for name, value in {"wall_velocity": wall_velocity, "wall_previous": wall_previous}.items():
             made.read(name, value, d, self._struct)

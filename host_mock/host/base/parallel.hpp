@@ -11,15 +11,15 @@
 
 namespace ilaw::host {
 
+#ifdef ILAW_HOSTILE
+inline constexpr bool is_hostile = true;
+#else
+inline constexpr bool is_hostile = false;
+#endif
+
 // Items of a chunk. With ILAW_HOSTILE they are few, so that small models have several chunks; whole nodes and
 // packs all the same.
-constexpr std::ptrdiff_t chunk_of(std::ptrdiff_t usual) {
-#ifdef ILAW_HOSTILE
-  return usual > 24 ? 24 : usual;
-#else
-  return usual;
-#endif
-}
+constexpr std::ptrdiff_t chunk_of(std::ptrdiff_t usual) { return is_hostile && usual > 24 ? 24 : usual; }
 
 constexpr std::ptrdiff_t chunks_of(std::ptrdiff_t count, std::ptrdiff_t chunk) {
   return (count + chunk - 1) / chunk;

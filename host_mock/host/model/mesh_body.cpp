@@ -175,8 +175,11 @@ Eigen::Matrix<double, 6, 6> elasticity(const Material& material) {
 Eigen::Matrix<double, 24, 24> stiffness_of_box(const Hexahedron& box, const Material& material,
                                                Element element) {
   Eigen::Matrix<double, 24, 24> stiffness = Eigen::Matrix<double, 24, 24>::Zero();
-  for (const StrainMatrix& b : strain_matrices(box, element))
-    stiffness += box.weights[0] * b.transpose() * elasticity(material) * b;
+  for (const StrainMatrix& b : strain_matrices(box, element)) {
+    const Eigen::Matrix<double, 24, 6> stresses = box.weights[0] * b.transpose() * elasticity(material);
+    // By coefficients: on aarch64 Eigen's product of large matrices multiplies and adds with one rounding.
+    stiffness += stresses.lazyProduct(b);
+  }
   return 0.5 * (stiffness + stiffness.transpose());  // to the last bit
 }
 

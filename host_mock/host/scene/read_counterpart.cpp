@@ -102,9 +102,11 @@ std::unique_ptr<Counterpart> read_surface(const json& against, const NodeSet& ow
       throw SceneError(
           pointer + "/surface",
           "node " + std::to_string(node) + " would meet its own facet, expected the surface of another body");
-  if (against.value("discretization", "node_to_facet") == "node_to_facet")
-    return std::make_unique<MeshSurface>(model, own.nodes, surface);
-  if (own.facets.empty())
+  const bool is_face = !own.facets.empty();
+  const std::string discretization =
+      against.value("discretization", is_face ? "dual_mortar" : "node_to_facet");
+  if (discretization == "node_to_facet") return std::make_unique<MeshSurface>(model, own.nodes, surface);
+  if (!is_face)
     throw mistake(pointer + "/discretization", against["discretization"].dump(),
                   "\"node_to_facet\", or a face with facets as the 'nodes' of the interface");
   return std::make_unique<MortarSurface>(model, own, surface);

@@ -24,9 +24,7 @@ class Named {
       ForceSetup& force = add(name);
       force.interface = static_cast<int>(i);
       for (std::size_t k = i + 1; k < scene.interfaces.size(); ++k)
-        if (scene.interfaces[k]->name() == name + other_side_suffix ||
-            scene.interfaces[k]->setup().edges_of == name)
-          force.other_side = static_cast<int>(k);
+        if (scene.interfaces[k]->setup().edges_of == name) force.other_side = static_cast<int>(k);
     }
     const json loads = scene.source.value("loads", json::array());
     for (std::size_t i = 0; i < loads.size(); ++i)

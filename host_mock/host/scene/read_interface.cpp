@@ -189,12 +189,25 @@ std::unique_ptr<Interface> make_interface(const json& interface, std::size_t num
 
 // ---- edge rows: no averaged constraint belongs to a sharp edge of the main face -------------------------
 
-// A law that can pull bonds the faces, and needs no edge rows. Values per node are of the secondary nodes.
-bool may_have_edge_rows(const json& interface, const Interface& made) {
-  const json parameters = interface.value("parameters", json::object());
-  return (made.info().capabilities & ILAW_CAN_ADHERE) == 0 &&
-         std::none_of(parameters.begin(), parameters.end(),
-                      [](const json& value) { return value.is_object() && value.contains("per_node"); });
+// A law that can pull bonds the faces, and needs no edge rows.
+bool may_have_edge_rows(const Interface& made) { return (made.info().capabilities & ILAW_CAN_ADHERE) == 0; }
+
+// Values per node are of the secondary nodes: an edge row has the value of the closest one at the start.
+void give_values(json& parameters, const std::vector<int>& edges, const std::vector<int>& own,
+                 const Model& model) {
+  for (json& value : parameters) {
+    if (!value.is_object() || !value.contains("per_node")) continue;
+    json values = json::array();
+    for (const int edge : edges) {
+      const auto distance = [&](int node) {
+        return (model.position(node) - model.position(edge)).squaredNorm();
+      };
+      const auto closest =
+          std::min_element(own.begin(), own.end(), [&](int a, int b) { return distance(a) < distance(b); });
+      values.push_back(value["per_node"][static_cast<std::size_t>(closest - own.begin())]);
+    }
+    value["per_node"] = std::move(values);
+  }
 }
 
 // Without the nodes that motions hold, which no impulse moves.
@@ -215,7 +228,7 @@ std::unique_ptr<Interface> make_edge_rows(std::size_t number, const Scene& scene
   const std::string pointer = at("/interfaces", number);
   const Interface& made = *scene.interfaces[number];
   const auto* const faces = dynamic_cast<const MortarSurface*>(made.setup().counterpart.get());
-  if (!faces || !may_have_edge_rows(interface, made)) return nullptr;
+  if (!faces || !may_have_edge_rows(made)) return nullptr;
   const NodeSet own = select_nodes(interface["nodes"], *scene.model, pointer + "/nodes");
   SharpNodes edges = sharp_nodes_of(
       select_surface(interface["against"]["surface"].get<std::string>(), *scene.model, pointer),
@@ -225,6 +238,8 @@ std::unique_ptr<Interface> make_edge_rows(std::size_t number, const Scene& scene
   if (moving_part(own, driven, d).nodes.empty()) edges.set = moving_part(edges.set, driven, d);
   if (edges.set.nodes.empty()) return nullptr;
   interface["name"] = made.name() + "_edges";
+  if (interface.contains("parameters"))
+    give_values(interface["parameters"], edges.set.nodes, own.nodes, *scene.model);
   auto counterpart = std::make_unique<EdgeRows>(*scene.model, edges.set.nodes, own,
                                                 deepest_edge * edges.shortest_edge, *faces);
   return make_interface(interface, number, scene, edges.set, std::move(counterpart), made.name(),

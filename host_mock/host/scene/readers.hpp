@@ -23,11 +23,6 @@ struct NodeSet;
 struct Scene;
 struct Spring;
 
-// Replaces "both_sides" in a scene: a second interface, at the end of the list, has the nodes of the surface
-// against the surface of the nodes, and each bears half of its tributary areas.
-void expand_both_sides(nlohmann::json& scene);
-constexpr const char* other_side_suffix = "_other_side";  // of the name of the second
-
 // "/model": the bodies. meshes: what was read of files, as describe_meshes has it.
 std::unique_ptr<Model> read_model(const nlohmann::json& model, const std::filesystem::path& scene_file,
                                   nlohmann::json& meshes);

@@ -92,7 +92,6 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   Scene scene;
   scene.file = file;
   scene.source = std::move(source);
-  expand_both_sides(scene.source);
   scene.title = scene.source.value("title", file.stem().string());
   scene.model = read_model(scene.source["model"], scene.file, scene.meshes);
   read_sets(scene.source.value("sets", json::object()), *scene.model);

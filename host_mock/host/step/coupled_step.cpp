@@ -2,6 +2,7 @@
 #include "step/coupled_step.hpp"
 
 #include "base/bytes.hpp"
+#include "base/parallel.hpp"
 #include "base/words.hpp"
 #include "step/dof_loops.hpp"
 
@@ -41,13 +42,14 @@ CoupledStep::CoupledStep(const Model& model, Interfaces& interfaces)
 }
 
 // Which contacts may act follows from a bound on speeds. Where impulses leave a node faster, the step is
-// solved again with a larger one: whether that happens does not depend on which contacts are active.
+// solved again with a larger one: whether that happens does not depend on which contacts are active. With
+// ILAW_HOSTILE each step is solved twice, because a try must leave nothing behind.
 const ilaw_coupled_report& CoupledStep::solve(StepView step, const double* inverse_mass, Dofs& v) {
   const double speed = std::max(step.speed_before, step.speed_after);
   step.speed_after = 2.0 * speed;
   open(step);
   if (!nodes_.empty()) v_free_ = v;
-  for (;;) {
+  for (bool is_last_try = !is_hostile;; is_last_try = true) {
     const ilaw_bodies bodies = gather(step, inverse_mass, v);
     try {
       report_ = solver_.solve(bodies, given_, options_of(step, speed));
@@ -58,8 +60,10 @@ const ilaw_coupled_report& CoupledStep::solve(StepView step, const double* inver
     if (nodes_.empty()) return report_;
     if (!(report_.message && forget_forces())) {  // else once more, from rest
       const double fastest = largest_speed(v, model_.dimension());
-      if (!(fastest > step.speed_after)) return report_;
-      step.speed_after = 2.0 * fastest;
+      if (fastest > step.speed_after)
+        step.speed_after = 2.0 * fastest;
+      else if (is_last_try)
+        return report_;
     }
     v = v_free_;
     open(step);

@@ -67,7 +67,10 @@ void Integrator::step() {
   if (!transmits_steadily_ && !interfaces_.empty()) find_contact_mass(times);
   if (temperatures_) temperatures_->conduct(times);  // T_free = T + C^-1 h (q - K T)
   // r = law(v_free, H, gap, state, T_free), v = v_free + H r
-  add_reactions({u_, v_before_, times.after, dt_, speed_before_, speed_free, steps_ + 1});
+  StepView view{u_, v_before_, times.after, dt_, speed_before_, speed_free, steps_ + 1};
+  view.since = times.before;  // to the bit, so that obstacles come at the velocity that the last step saw
+  view.until = time_of(steps_ + 2);
+  add_reactions(view);
   if (contact_inverse_mass_.size() > 0) add_load_reactions(times);
   laps.add_to(seconds_.interfaces);
   const WorkAndSpeed external = work_and_speed(external_impulse_, v_before_, v_, model_.dimension());

@@ -72,12 +72,14 @@ void Audit::close() try {
   const Dofs change = impulse.cwiseProduct(Eigen::Map<const Dofs>(inverse, impulse.size())),
              v_smooth = v - change;
   const Eigen::Index d = scene_.model->dimension();
+  const std::int64_t n = integrator_.steps();
   const double speed = std::max({largest_speed(v, d), largest_speed(integrator_.velocity_before(), d),
                                  largest_speed(v_smooth, d), largest_speed(change, d)});
   const double farthest = (scene_.model->position() + u).cwiseAbs().maxCoeff();
   for (const auto& interface : interfaces_)
-    interface->close({u, v, integrator_.velocity_before(), v_smooth, integrator_.time(), scene_.dt, speed,
-                      farthest, is_start()});
+    interface->close({u, v, integrator_.velocity_before(), v_smooth, integrator_.time_of(n - 1),
+                      integrator_.time(), integrator_.time_of(n + 1), scene_.dt, speed, farthest,
+                      is_start()});
 } catch (const AuditFailure& failure) {
   throw AuditFailure("audit: " + step_text() + failure.what());
 }

@@ -15,12 +15,14 @@
 namespace ilaw::host {
 namespace {
 
-// Of a velocity, in the scale of the step: contacts that share nodes are solved to 1e-10 of it.
-constexpr double law_bound = 1e-8;
-// An answer that jumps (a rupture, a contact that closes) is judged at velocities and gaps off by this, too;
-// a gap that this part of the velocity closes in a step counts as closed for contacts that share nodes.
-constexpr double jump = 1e-9;
-constexpr double closing = 1e-10;
+// Parts of the largest velocity of the step. An answer may be off by the first. One that jumps (a rupture, a
+// contact that closes) is judged at velocities and gaps off by the second, too; a gap that the third closes
+// in a step counts as closed. A contact alone is known but for the rounding of its velocities; contacts that
+// share nodes are solved to 1e-10.
+struct Bounds {
+  double law, jump, closing;
+};
+constexpr Bounds alone{1e-13, 1e-13, 0.0}, shared{1e-9, 2e-10, 1e-10};
 constexpr double energy_bound = 1e-7;
 constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
 
@@ -45,9 +47,10 @@ AuditedInterface::AuditedInterface(const Interface& interface, const Model& mode
 
 bool AuditedInterface::find_whether_it_stops() const {
   const Dofs zero = Dofs::Zero(model_.mass().size());
-  const AuditedStep step{zero, zero, zero, zero, 0.0, 1.0, 1.0, 0.0, false};
+  const AuditedStep step{zero, zero, zero, zero, -1.0, 0.0, 1.0, 1.0, 1.0, 0.0, false};
+  const Vector& tangent = interface_.setup().tangent;
   Call call;
-  call.normal = Vector::Unit(d_, d_ - 1);
+  call.normal = tangent.size() > 0 ? across(tangent) : Vector(Vector::Unit(d_, d_ - 1));
   call.v_free = call.v_smooth = call.v_previous = -call.normal;
   call.delassus = Vector::Ones(d_);
   call.parameters = interface_.parameters_of(0);
@@ -85,14 +88,14 @@ void AuditedInterface::find_velocities(Call& call, int node_index, const Audited
   const ContactPoint alone, &point = contact < 0 ? alone : interface_.point(contact);
   Vector before = Vector::Zero(d_), after = before;
   if (const Obstacle* obstacle = counterpart.obstacle()) {
-    after = obstacle->velocity(step.time, step.time + step.dt);
-    before = step.is_start ? after : obstacle->velocity(step.time - step.dt, step.time);
+    after = obstacle->velocity(step.time, step.until);
+    before = step.is_start ? after : obstacle->velocity(step.since, step.time);
   }
   if (counterpart.turns()) {
-    const SurfaceVelocities surface = surface_velocities(
-        counterpart, node_index, step.u, step.time,
-        {call.gap + interface_.setup().gap_offset(node_index), call.normal},
-        counterpart.obstacle()->rates(step.time - step.dt, step.time, step.time + step.dt));
+    const SurfaceVelocities surface =
+        surface_velocities(counterpart, node_index, step.u, step.time,
+                           {call.gap + interface_.setup().gap_offset(node_index), call.normal},
+                           counterpart.obstacle()->rates(step.since, step.time, step.until));
     before += step.is_start ? surface.after : surface.before;
     after += surface.after;
   }
@@ -108,7 +111,7 @@ void AuditedInterface::find_velocities(Call& call, int node_index, const Audited
 void AuditedInterface::turn(Call& call, const AuditedStep& step) const {
   const Counterpart& counterpart = *interface_.setup().counterpart;
   for (const std::size_t first : counterpart.turns() && !step.is_start ? axes_ : std::vector<std::size_t>())
-    turn_axis(counterpart, d_, step.time - step.dt, step.time,
+    turn_axis(counterpart, d_, step.since, step.time,
               [&](std::size_t c) -> double& { return call.state[first + c]; });
 }
 
@@ -200,18 +203,19 @@ void AuditedInterface::check_node(int node_index, const AuditedStep& step) {
   const Call call = call_of(node_index, step);
   const Vector change = call.delassus.cwiseProduct(call.impulse);
   const double speed = std::max({step.speed, call.v_free.norm(), call.v_previous.norm(), change.norm()});
-  const double rounded = std::max(rounding * step.farthest, is_coupled_ ? closing * speed * step.dt : 0.0);
-  const double bound = law_bound * speed + rounded / step.dt;
+  const Bounds& bounds = is_coupled_ ? shared : alone;
+  const double rounded = std::max(rounding * step.farthest, bounds.closing * speed * step.dt);
+  const double bound = bounds.law * speed + rounded / step.dt;
   work_scale_ += call.impulse.norm() * (call.v_free.norm() + call.v_previous.norm() + change.norm()) +
                  call.impulse.norm() * step.speed;
-  // A driven node has next to no H: within the bound its impulse is off by a large one.
-  if (const double least = call.delassus.minCoeff(); least < call.delassus.maxCoeff())
-    work_rounding_ += bound / least * speed;
+  // Within the bound an impulse is off by bound / H, which is large at driven nodes, with next to no H.
+  if (const double least = call.delassus.minCoeff(); least > 0.0)
+    work_rounding_ += bound / least * (least < call.delassus.maxCoeff() ? speed : bound);
   if (!(law_.info().capabilities & ILAW_CAN_ADHERE) && change.dot(call.normal) < -bound)
     fail(node_index,
          formatted("cone: the impulse %.3g pulls, and the law cannot adhere", call.impulse.dot(call.normal)));
   check_gap(call, node_index, step);
-  const double h = jump * speed + rounded / step.dt;
+  const double h = bounds.jump * speed + rounded / step.dt;
   for (const auto& [gap, velocity] : {std::pair{0.0, 0.0}, std::pair{-rounded, 0.0}, std::pair{rounded, 0.0},
                                       std::pair{0.0, -h}, std::pair{0.0, h}}) {
     Call near = call;
@@ -245,7 +249,7 @@ void AuditedInterface::check_gap(const Call& call, int node_index, const Audited
   const bool is_rigid = stops_ && !(law_.info().capabilities & ILAW_CAN_ADHERE);
   if (!is_rigid || call.gap > -rounding * step.farthest) return;
   const Vector v = call.v_free + call.delassus.cwiseProduct(call.impulse);
-  const double bound = law_bound * std::max(step.speed, call.v_free.norm()) +
+  const double bound = (is_coupled_ ? shared : alone).law * std::max(step.speed, call.v_free.norm()) +
                        rounding * step.farthest / step.dt + std::max(0.0, call.v_previous.dot(call.normal));
   if (v.dot(call.normal) < -bound)
     fail(node_index, formatted("gap: it is %.3g and closes at %.3g, which a rigid law allows by %.3g alone",

@@ -15,10 +15,10 @@ namespace ilaw::host {
 // A step as it ended. v_smooth: its velocities without the impulses of interfaces.
 struct AuditedStep {
   const Dofs &u, &v, &v_before, &v_smooth;
-  double time, dt;
-  double speed;     // the largest of these velocities
-  double farthest;  // coordinate, which gaps are rounded by
-  bool is_start;    // a half step of the velocity, before which obstacles moved as after it
+  double since, time, until, dt;  // obstacles move from the first to the third
+  double speed;                   // the largest of these velocities
+  double farthest;                // coordinate, which gaps are rounded by
+  bool is_start;                  // a half step of the velocity, before which obstacles moved as after it
 };
 
 class AuditedInterface {

@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <fstream>
+#include <utility>
 
 namespace ilaw::host {
 namespace {
@@ -32,47 +33,27 @@ std::string text_of_parameters(const json& parameters) {
   return text;
 }
 
-void check_word(const BenchWords& option, const std::string& word) {
-  if (std::find(option.words.begin(), option.words.end(), word) != option.words.end()) return;
-  throw InputError(std::string(option.key) + ": found '" + word + "', expected one of " +
-                   joined(option.words));
-}
-
-std::vector<std::string> words_in(const json& entry, const char* key) {
-  if (!entry.contains(key)) return {};
-  const json& found = entry[key];
-  if (found.is_string()) return {found.get<std::string>()};
-  std::vector<std::string> words;
-  for (const json& word : found) words.push_back(word.get<std::string>());
+// The words of an entry, or the default.
+std::vector<std::string> words_in(const json& entry, const BenchWords& option) {
+  if (!entry.contains(option.key)) return {option.words.front()};
+  const json& found = entry[option.key];
+  const auto words =
+      found.is_string() ? std::vector{found.get<std::string>()} : found.get<std::vector<std::string>>();
+  for (const std::string& word : words)
+    if (std::find(option.words.begin(), option.words.end(), word) == option.words.end())
+      throw InputError(std::string(option.key) + ": found '" + word + "', expected one of " +
+                       joined(option.words));
   return words;
 }
 
-double share_in(const json& entry, const char* key, double usual) {
-  const double share = entry.value(key, usual);
-  if (share >= 0.0 && share <= 1.0) return share;
-  throw InputError(std::string(key) + ": found " + short_text(share) + ", expected a number from 0 to 1");
-}
-
 // A law with a '/' is the path of a library, as on the command line.
-void read_law(const json& entry, const std::string& law_of_folder, BenchCase& bench_case) {
-  bench_case.law = entry.value("law", entry.contains("library") ? "" : law_of_folder);
+void read_law(const json& entry, BenchCase& bench_case) {
+  bench_case.law = entry.value("law", "");
   bench_case.library = entry.value("library", bench_case.law);
   if (bench_case.law.find('/') == std::string::npos) return;
   if (entry.contains("library"))
     throw InputError("law: found '" + bench_case.law + "', expected the name of a law of 'library'");
   bench_case.law.clear();
-}
-
-std::vector<BenchCase> cases_of_entry(const json& entry, const std::string& law_of_folder) {
-  BenchCase base;
-  read_law(entry, law_of_folder, base);
-  base.what = entry.value("what", "");
-  base.parameters = entry.value("parameters", json::object());
-  base.touching = share_in(entry, "touching", base.touching);
-  base.pressed = share_in(entry, "pressed", base.pressed);
-  std::vector<std::vector<std::string>> words;
-  for (const BenchWords& option : bench_words()) words.push_back(words_in(entry, option.key));
-  return combinations(base, words);
 }
 
 }  // namespace
@@ -105,52 +86,46 @@ std::string text_of(const BenchCase& bench_case) {
   std::string text = named.empty() ? "" : named + "; ";
   text += bench_case.delassus + " H " + bench_case.frame + " " + bench_case.layout;
   if (bench_case.outputs != "none") text += " outputs " + bench_case.outputs;
-  if (bench_case.touching != 0.5) text += " touching " + short_text(bench_case.touching);
-  if (bench_case.pressed != 0.5) text += " pressed " + short_text(bench_case.pressed);
   if (bench_case.floats) text += " float";
   return text;
 }
 
-std::vector<BenchCase> combinations(const BenchCase& base,
-                                    const std::vector<std::vector<std::string>>& words_of_options) {
-  std::vector<BenchCase> cases = {base};
-  for (std::size_t k = 0; k < words_of_options.size(); ++k) {
-    if (words_of_options[k].empty()) continue;
-    const BenchWords& option = bench_words()[k];
-    std::vector<BenchCase> more;
-    for (const BenchCase& one : cases)
-      for (const std::string& word : words_of_options[k]) {
-        check_word(option, word);
-        more.push_back(one);
-        more.back().*option.member = word;
-      }
-    cases = std::move(more);
+std::vector<BenchEntry> read_bench_entries(const std::filesystem::path& file) try {
+  std::ifstream stream(file);
+  if (!stream) throw InputError("no such file, expected one of cases (JSON)");
+  std::vector<BenchEntry> entries;
+  const json sections = json::parse(stream);
+  for (const json& given : sections.at("benchmarks")) {
+    entries.push_back({given, file.string() + ": /benchmarks/" + std::to_string(entries.size()) + ": "});
+    if (!given.contains("law") && !given.contains("library"))
+      entries.back().given["law"] = std::filesystem::absolute(file).parent_path().filename().string();
   }
-  return cases;
+  return entries;
+} catch (const std::exception& error) {
+  throw InputError(file.string() + ": " + error.what());
 }
 
-std::vector<BenchCase> read_bench_cases(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError(file.string() + ": no such file, expected one of cases (JSON)");
-  std::string where = file.string() + ": ";
-  try {
-    const std::string law = std::filesystem::absolute(file).parent_path().filename();
-    std::vector<BenchCase> cases;
-    const json sections = json::parse(stream);
-    const json& entries = sections.at("benchmarks");
-    for (std::size_t k = 0; k < entries.size(); ++k) {
-      where = file.string() + ": /benchmarks/" + std::to_string(k) + ": ";
-      for (BenchCase& one : cases_of_entry(entries.at(k), law)) {
-        one.entry = where;
-        cases.push_back(std::move(one));
+std::vector<BenchCase> cases_of(const BenchEntry& entry) try {
+  BenchCase base;
+  base.where = entry.where;
+  read_law(entry.given, base);
+  base.what = entry.given.value("what", "");
+  base.parameters = entry.given.value("parameters", json::object());
+  base.floats = entry.given.value("float", false);
+  std::vector<BenchCase> cases = {base};
+  for (const BenchWords& option : bench_words()) {
+    const std::vector<BenchCase> before = std::exchange(cases, {});
+    for (const BenchCase& one : before)
+      for (const std::string& word : words_in(entry.given, option)) {
+        cases.push_back(one);
+        cases.back().*option.member = word;
       }
-    }
-    return cases;
-  } catch (const json::exception& error) {
-    throw InputError(where + error.what());
-  } catch (const InputError& refusal) {
-    throw InputError(where + refusal.what());
   }
+  return cases;
+} catch (const json::exception& error) {
+  throw InputError(entry.where + error.what());
+} catch (const InputError& refusal) {
+  throw InputError(entry.where + refusal.what());
 }
 
 }  // namespace ilaw::host

@@ -18,14 +18,12 @@ namespace ilaw::host {
 struct BenchCase {
   std::string library, law;  // library: name or path; law empty: every law of the library
   std::string what;          // in words; empty: the parameters say it
-  std::string entry;         // of a file of cases, to begin messages with; empty: of the command line
+  std::string where;         // of its entry
   // As in a scene; {"per_node": value} gives all nodes that value, one each.
   nlohmann::json parameters = nlohmann::json::object();
   // Words of bench_words below.
   std::string delassus = "scalar", frame = "local", layout = "aos", outputs = "none";
-  double touching = 0.5;  // share of the nodes whose gap is closed
-  double pressed = 0.5;   // share of those that approach
-  bool floats = false;    // arrays of float
+  bool floats = false;  // arrays of float
 };
 
 // The words of an option and of a key of a file of cases, the default first.
@@ -41,12 +39,16 @@ std::uint32_t form_of(const BenchCase& bench_case);
 // The words that distinguish a case from others of its law.
 std::string text_of(const BenchCase& bench_case);
 
-// One case per combination of words, each of which may be a list; throws InputError.
-std::vector<BenchCase> combinations(const BenchCase& base,
-                                    const std::vector<std::vector<std::string>>& words_of_options);
-// The section "benchmarks" of a JSON file. An entry whose "law" is a path, or that has a "library" alone, is
-// of all laws of that library; one with neither of the law that the file's folder is named after. Throws
-// InputError.
-std::vector<BenchCase> read_bench_cases(const std::filesystem::path& file);
+// What is to be measured, as a file of cases says it, and what messages about it begin with.
+struct BenchEntry {
+  nlohmann::json given;
+  std::string where;  // empty: on the command line
+};
+// The section "benchmarks" of a JSON file. An entry with neither "law" nor "library" is of the law that the
+// file's folder is named after. Throws InputError.
+std::vector<BenchEntry> read_bench_entries(const std::filesystem::path& file);
+// One case per combination of words, each of which may be a list. An entry whose "law" is a path, or that has
+// a "library" alone, is of all laws of that library. Throws InputError.
+std::vector<BenchCase> cases_of(const BenchEntry& entry);
 
 }  // namespace ilaw::host

@@ -33,8 +33,6 @@ json json_of(const BenchResult& result) {
           {"frame", c.frame},
           {"layout", c.layout},
           {"outputs", c.outputs},
-          {"touching", c.touching},
-          {"pressed", c.pressed},
           {"nodes", result.nodes},
           {"ns_per_node", result.ns_per_node},
           {"bytes_per_node", result.bytes_per_node},

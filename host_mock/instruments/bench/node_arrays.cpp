@@ -110,7 +110,7 @@ NodeArrays::NodeArrays(const BenchLaw& law, const BenchCase& bench_case, std::in
     per_node_.push_back({nullptr, nullptr, 1, std::vector<double>(count, value)});
   Draw draw(1);
   for (std::int64_t i = 0; i < drawn_; ++i) {
-    draw_node(draw, bench_case, i);
+    draw_node(draw, i);
     draw_delassus(draw, i);
   }
   if (has_spins_) draw_spins(draw);
@@ -128,8 +128,9 @@ double* NodeArrays::place(ilaw_input ilaw_batch::*input, std::int64_t i, std::in
   return nullptr;
 }
 
-void NodeArrays::draw_node(Draw& draw, const BenchCase& bench_case, std::int64_t i) {
-  const bool touches = draw.chance(bench_case.touching), approaches = draw.chance(bench_case.pressed);
+// Half of the nodes touch, and half of them approach.
+void NodeArrays::draw_node(Draw& draw, std::int64_t i) {
+  const bool touches = draw.chance(0.5), approaches = draw.chance(0.5);
   const double speed = draw.uniform(0.0, 1.0);
   Eigen::Vector3d v{approaches ? -speed : speed, draw.uniform(-1.0, 1.0), draw.uniform(-1.0, 1.0)};
   const double gap = touches ? draw.uniform(-0.1 * time_step, 0.0) : draw.uniform(0.01, 0.1);

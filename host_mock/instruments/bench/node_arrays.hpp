@@ -40,7 +40,7 @@ class NodeArrays {
   const ilaw_batch& batch() const { return batch_; }  // of doubles, in any case
 
  private:
-  void draw_node(Draw& draw, const BenchCase& bench_case, std::int64_t i);
+  void draw_node(Draw& draw, std::int64_t i);
   void draw_delassus(Draw& draw, std::int64_t i);
   void draw_spins(Draw& draw);
   // Component c of node i of an input; null where evaluate does not read it.

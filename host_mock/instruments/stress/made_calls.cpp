@@ -86,7 +86,7 @@ MadeProblem::Wrench MadeProblem::answer(const Contact& contact, const Wrench& v_
 // The contacts of a law, which lie one behind another. Their numbers are read where they lie.
 struct MadeProblem::Group {
   std::vector<std::int32_t> body, counterpart;
-  std::vector<double> state_in, state_out;
+  std::vector<double> weight, other_weight, state_in, state_out;
   std::vector<ilaw_status> status;
   ilaw_batch batch{};
   ilaw_contacts given{};
@@ -94,9 +94,14 @@ struct MadeProblem::Group {
   Group(const interface& law, ilaw_delassus_form form, double step, Contact* first, Contact* end)
       : status(static_cast<std::size_t>(end - first)), batch(batch_of_step(step)) {
     for (const Contact* contact = first; contact != end; ++contact) {
-      body.push_back(contact->body);
-      counterpart.push_back(contact->counterpart);
-      state_in.insert(state_in.end(), contact->state.begin(), contact->state.end());
+      const auto append = [](auto& to, const auto& values) {
+        to.insert(to.end(), values.begin(), values.end());
+      };
+      append(body, contact->body);
+      append(counterpart, contact->counterpart);
+      append(weight, contact->weight);
+      append(other_weight, contact->other_weight);
+      append(state_in, contact->state);
     }
     state_out = state_in;
     constexpr auto stride = static_cast<std::int64_t>(sizeof(Contact) / sizeof(double));
@@ -116,6 +121,13 @@ struct MadeProblem::Group {
     given.counterpart_arm = input(first->other_arm.data());
     given.wall_velocity = input(first->wall.data());
     given.wall_previous = input(first->wall_before.data());
+    if (const std::size_t ends = first->body.size(); ends > 1) {
+      given.body_count = given.counterpart_count = static_cast<std::uint32_t>(ends);
+      given.weight_size = static_cast<std::uint32_t>(first->weight.size() / ends);
+      given.body_weight = ilaw::input(weight.data(), static_cast<std::int64_t>(first->weight.size()), 1);
+      given.counterpart_weight =
+          ilaw::input(other_weight.data(), static_cast<std::int64_t>(first->other_weight.size()), 1);
+    }
     if (form != ILAW_DELASSUS_TRANSVERSE_SPIN) return;
     batch.moment = ilaw::output(first->impulse.data() + 3, stride, 1);
     given.wall_spin = input(first->wall.data() + 3);

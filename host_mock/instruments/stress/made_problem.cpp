@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace ilaw::host {
 namespace {
@@ -23,9 +24,23 @@ Eigen::Matrix<double, 6, 6> at_end_of(const Eigen::Vector3d& arm) {
 
 template <class Visit>
 void MadeProblem::for_bodies(const Contact& contact, Visit visit) const {
-  visit(static_cast<std::size_t>(contact.body), at_end_of(contact.arm));
-  if (contact.counterpart >= 0)
-    visit(static_cast<std::size_t>(contact.counterpart), Matrix(-at_end_of(contact.other_arm)));
+  const auto visit_side = [&](const std::vector<std::int32_t>& bodies, const std::vector<double>& weights,
+                              const Matrix& at) {
+    std::map<std::int32_t, Matrix> parts;  // a side may name a body twice
+    for (std::size_t e = 0; e < bodies.size(); ++e) {
+      if (bodies[e] < 0) continue;
+      Matrix weight = Matrix::Identity();
+      if (setup_.has_axes)
+        weight.topLeftCorner<3, 3>() =
+            Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&weights[9 * e]);
+      else if (!weights.empty())
+        weight *= weights[e];
+      parts.try_emplace(bodies[e], Matrix::Zero()).first->second += weight * at;
+    }
+    for (const auto& [body, part] : parts) visit(static_cast<std::size_t>(body), part);
+  };
+  visit_side(contact.body, contact.weight, at_end_of(contact.arm));
+  visit_side(contact.counterpart, contact.other_weight, Matrix(-at_end_of(contact.other_arm)));
 }
 
 MadeProblem::Wrench MadeProblem::relative(const Contact& contact, Wrench Body::*motion) const {
@@ -100,9 +115,10 @@ void MadeProblem::draw_bodies(Draw& draw) {
 // Redundant: several contacts of the same pair of bodies with the same normal.
 void MadeProblem::draw_contact(Draw& draw, Contact& contact) {
   const int last = setup_.bodies - 1;
-  contact.body = draw.whole(0, last);
-  contact.counterpart = draw.chance(0.5) ? -1 : draw.whole(0, last);
-  if (contact.counterpart == contact.body) contact.counterpart = -1;
+  contact.body = {draw.whole(0, last)};
+  contact.counterpart = {draw.chance(0.5) ? -1 : draw.whole(0, last)};
+  if (contact.counterpart == contact.body) contact.counterpart = {-1};
+  draw_facets(draw, contact);
   contact.normal = Vector(draw.direction(3).data());
   if (setup_.normals == MadeSetup::Normals::wedged) {
     const double angle = draw.uniform(0.0, 0.5), side = contacts_.size() % 2 ? 1.0 : -1.0;
@@ -112,17 +128,37 @@ void MadeProblem::draw_contact(Draw& draw, Contact& contact) {
     const Contact& twin = contacts_[static_cast<std::size_t>(draw.whole(0, contact_count() - 1))];
     contact.body = twin.body;
     contact.counterpart = twin.counterpart;
+    contact.weight = twin.weight;
+    contact.other_weight = twin.other_weight;
     contact.normal = twin.normal;
   }
-  constexpr double radius = 0.5;
+  constexpr double radius = 0.5, other_radius = 0.3;
   if (setup_.rotate) {
     for (Vector* arm : {&contact.arm, &contact.other_arm})
       for (double& component : *arm) component = draw.uniform(-1.0, 1.0);
   } else if (rotates()) {
     contact.arm = -radius * contact.normal;
-    contact.other_arm = radius * contact.normal;
+    contact.other_arm = other_radius * contact.normal;
   }
   contact.gap = setup_.gap * setup_.speed * setup_.step * draw.uniform(0.0, 1.0);
+}
+
+// More bodies for both sides, some of them named twice.
+void MadeProblem::draw_facets(Draw& draw, Contact& contact) const {
+  if (setup_.ends == 1) return;
+  const auto has = [](const std::vector<std::int32_t>& side, std::int32_t body) {
+    return std::find(side.begin(), side.end(), body) != side.end();
+  };
+  for (auto [side, other] :
+       {std::pair{&contact.body, &contact.counterpart}, {&contact.counterpart, &contact.body}})
+    for (int e = 1; e < setup_.ends; ++e) {
+      const std::int32_t body = draw.whole(-1, setup_.bodies - 1);
+      side->push_back(has(*other, body) ? -1 : body);
+    }
+  for (std::vector<double>* weights : {&contact.weight, &contact.other_weight})
+    for (int e = 0; e < setup_.ends; ++e)
+      for (int c = 0; c < (setup_.has_axes ? 9 : 1); ++c)
+        weights->push_back(setup_.has_axes ? (c % 4 == 0) + draw.uniform(-0.5, 0.5) : draw.uniform(0.1, 1.0));
 }
 
 // The free velocity of a contact, which approaches or leaves; its velocity before the step approaches.
@@ -182,8 +218,9 @@ void MadeProblem::add(const MadeProblem& other) {
   const auto first = static_cast<std::int32_t>(bodies_.size());
   bodies_.insert(bodies_.end(), other.bodies_.begin(), other.bodies_.end());
   for (Contact contact : other.contacts_) {
-    contact.body += first;
-    if (contact.counterpart >= 0) contact.counterpart += first;
+    for (std::vector<std::int32_t>* side : {&contact.body, &contact.counterpart})
+      for (std::int32_t& body : *side)
+        if (body >= 0) body += first;
     contacts_.push_back(contact);
   }
   sort_by_law();

@@ -26,7 +26,9 @@ struct MadeSetup {
   double no_freedom = 0.0;    // probability that a body cannot move along an axis; with the form FULL
   bool rotate = false;        // with the form FULL; spheres always do
   Normals normals = Normals::any;
-  double gap = 0.0;  // largest, over speed times step
+  int ends = 1;           // bodies on either side at most, with weights: the nodes of facets
+  bool has_axes = false;  // weights are matrices, of nodes with axes of their own; with the form FULL
+  double gap = 0.0;       // largest, over speed times step
   double open = 1.0 / 3.0;
   double speed = 1.0, step = 1e-3;
 };
@@ -68,7 +70,8 @@ class MadeProblem {
   };
   struct Contact {
     std::size_t law = 0;
-    std::int32_t body = 0, counterpart = -1;
+    std::vector<std::int32_t> body{0}, counterpart{-1};  // -1: a wall, or no body
+    std::vector<double> weight, other_weight;            // as coupled.h has them, none for one body
     Vector normal = Vector::Zero(), arm = normal, other_arm = normal;
     double gap = 0.0;
     Wrench wall = Wrench::Zero(), wall_before = wall, made = wall, impulse = wall;
@@ -83,12 +86,14 @@ class MadeProblem {
   Wrench random(Draw& draw, int count) const;
   void draw_bodies(Draw& draw);
   void draw_contact(Draw& draw, Contact& contact);
+  void draw_facets(Draw& draw, Contact& contact) const;
   Wrench draw_velocity(Draw& draw, Contact& contact);
   void make(const std::vector<Wrench>& v_free);
   bool is_well_posed(const Contact& contact, const Wrench& v) const;
   void sort_by_law();
 
-  // Calls visit with each body of a contact, and the matrix from its motion to its part of the contact's.
+  // Calls visit with each body of a contact, once for each side, and the matrix from its motion to its part
+  // of the contact's.
   template <class Visit>
   void for_bodies(const Contact& contact, Visit visit) const;
   Wrench relative(const Contact& contact, Wrench Body::*motion) const;

@@ -165,6 +165,8 @@ json join_block(json& scene, Draw& draw) {
     const int layer = (n + 1) * (n + 1);
     nodes = numbers(0, layer);
     against = {{"nodes", numbers(layer * (n + 1) + layer * height, layer)}, {"normal", {0.0, 0.0, 1.0}}};
+  } else if (height == 1) {  // a third of them
+    against["discretization"] = "node_to_facet";
   }
   scene["model"]["blocks"].push_back(lower);
   scene["interfaces"][0]["nodes"] = nodes;

@@ -36,18 +36,6 @@ void give_default(json& source, const char* bodies, const char* key, const json&
     if (!body.contains(key)) body[key] = value;
 }
 
-bool has_edge_rows(const Scene& read) {
-  return std::any_of(read.interfaces.begin(), read.interfaces.end(),
-                     [](const auto& one) { return !one->setup().edges_of.empty(); });
-}
-
-// "both_sides" makes two interfaces of one; edge rows stand behind those of the scene.
-bool has_each_interface(const json& source, const Scene& read) {
-  const auto own = std::count_if(read.interfaces.begin(), read.interfaces.end(),
-                                 [](const auto& one) { return one->setup().edges_of.empty(); });
-  return source["interfaces"].size() == static_cast<std::size_t>(own);
-}
-
 // ---- more contacts, more points ----
 
 // No node moves so far, whatever pushes it.
@@ -318,7 +306,7 @@ Made in_other_units(const json& source, const Scene& read) {
   RelatedScene made{source};
   made.length = units.length;
   made.time = units.time;
-  bool all = !source.contains("fields") && !read.model->thermal() && has_each_interface(source, read);
+  bool all = !source.contains("fields") && !read.model->thermal();
   all = all && for_each_quantity(made.source, [&](const Quantity& quantity, json& value) {
           const double factor = std::pow(units.mass, quantity.mass) *
                                 std::pow(units.length, quantity.length) * std::pow(units.time, quantity.time);
@@ -346,7 +334,6 @@ Made with_parameters(const json& source, const Scene& read, Form form) {
   // Of constants a law sees that two directions are alike.
   made.excuse = "tell the two tangential axes apart: expected a tangent";
   bool some = false;
-  if (!has_each_interface(source, read)) return {};
   for (std::size_t i = 0; i < source["interfaces"].size(); ++i) {
     const Interface& interface = *read.interfaces[i];
     const ilaw_law& law = *interface.library().law(interface.setup().law);
@@ -373,7 +360,6 @@ Made as_tables(const json& source, const Scene& read) {
 }
 
 Made per_node(const json& source, const Scene& read) {
-  if (has_edge_rows(read)) return {};  // a law with values per node has none
   return with_parameters(
       source, read, [](const ilaw_parameter& parameter, const json& value, const Interface& interface) {
         if (!(parameter.flags & ILAW_FLAG_ALLOWS_PER_NODE)) return json();

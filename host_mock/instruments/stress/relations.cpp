@@ -190,7 +190,7 @@ class Check {
     const std::string bits = bits_of(run_);
     same_bits("with two threads", &Check::on_two_threads, state_);
     same_bits("beside itself", &Check::beside_itself, state_ + state_);
-    same_bits("resumed", &Check::resumed, bits + energies_of(run_));
+    same_bits("resumed", &Check::resumed, bits + sums_of(run_));
     same_bits("with contacts one by one", &Check::one_by_one, state_);
     same_bits("without skipping", &Check::without_skip, bits);  // sums of energies run over other contacts
     if (!source_.contains("fields")) same_bits("with parameters in reverse order", &Check::permuted, state_);
@@ -209,11 +209,17 @@ class Check {
     return bits;
   }
 
-  static std::string energies_of(const RelatedRun& run) {
-    const EnergyReport energy = run.integrator.energy();
-    const std::array<double, 3> values = {energy.interface_work, energy.reaction_work,
-                                          energy.by_law[ILAW_ENERGY_FRICTION]};
-    return {reinterpret_cast<const char*>(values.data()), sizeof values};
+  // What a summary tells of energies and heat.
+  static std::string sums_of(const RelatedRun& run) {
+    std::string bits;
+    const auto add = [&bits](const auto& parts) {
+      for (const auto& part : parts)
+        bits.append(reinterpret_cast<const char*>(&part.second), sizeof part.second);
+    };
+    add(named(run.integrator.energy()));
+    if (const Temperatures* const temperatures = run.integrator.temperatures())
+      add(named(temperatures->report()));
+    return bits;
   }
 
   std::string on_two_threads() const {
@@ -237,7 +243,7 @@ class Check {
     first.integrator.save(checkpoint);
     second.integrator.load(checkpoint);
     second.advance(steps_);
-    return bits_of(second) + energies_of(second);
+    return bits_of(second) + sums_of(second);
   }
 
   // Several scenes at once in one process. Readers of meshes start processes, which threads must not do.

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # An ilaw as users get it, by `cmake --install`, from the archive and from the Debian packages: an outside project
-# builds hosts against it, and they run. Laws are built by first_law_test, against what cmake --install leaves: the
+# builds hosts against it, and they run. Laws are built by kit.first_law, against what cmake --install leaves: the
 # other two ways must bring the same files. Packages are also installed and removed by dpkg (clean_root.sh).
 # Usage: install.sh BUILD SOURCE C_COMPILER CXX_COMPILER install|archive|packages
 set -euo pipefail
 build=$1 source=$2 cc=$3 cxx=$4 way=$5
+unset ILAW_PATH  # which comes before the folder of an installed program
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
@@ -53,7 +54,8 @@ if [ "$way" != install ]; then
 fi
 
 echo "== the program, from where it lies"
-"$prefix/bin/ilaw" list | grep -q "^coulomb .*$prefix/lib/ilaw/coulomb.so"
+"$prefix/bin/ilaw" list >laws
+grep -q "^coulomb .*$prefix/lib/ilaw/coulomb.so" laws || { cat laws; exit 1; }
 "$prefix/bin/ilaw" run "$prefix/share/ilaw/scenes/sliding_block.json" --out results
 
 if [ -e "$build/lib/libilaw_lammps.so" ] && [ -x "$(command -v lmp)" ]; then

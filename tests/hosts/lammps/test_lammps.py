@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """fix ilaw/pair and fix ilaw/wall in the system's lmp, on one to four ranks: closed forms, runs that go on, restarts.
-One grain that does not turn: tests/hosts/protocols."""
+One grain that does not turn: tests/hosts/protocols. Spheres that turn: tests/hosts/spheres.py."""
 import math
 import os
 import pathlib
 import re
-import signal
 import subprocess
 import sys
-import time
 
 import pytest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import spheres  # noqa: E402
 
 STYLES = os.environ["ILAW_LAMMPS"]
 EXAMPLES = sorted((pathlib.Path(os.environ["ILAW_SOURCE"]) / "api" / "lammps" / "examples").glob("in.*"))
@@ -183,35 +184,6 @@ def test_a_restart_does_not_give_moments_to_a_law_without(tmp_path):
         lammps(tmp_path, restarted() + INTEGRATE + pairs.format(RESISTING[0]) + "run 1\n")
 
 
-def last_whole_restart(tmp_path, running):
-    """Step of the last restart file but one, once a pile has grains in contact: the last may be half written."""
-    end = time.monotonic() + 120
-    while time.monotonic() < end and running.poll() is None:
-        steps = sorted(int(file.suffix[1:]) for file in tmp_path.glob("half.*"))
-        if len(steps) > 1 and steps[-2] >= 200:
-            return steps[-2]
-        time.sleep(0.002)
-    raise RuntimeError(f"no restart file, and LAMMPS returned {running.poll()}")
-
-
-def test_a_run_that_was_killed_goes_on_as_if_nothing_had_been(tmp_path):
-    fixes = INTEGRATE + WALLS + "fix p all ilaw/pair coulomb friction 0.3\nrestart 20 half\n"
-    begin = BEGIN + BOX + grains(1.05) + MASS + fixes
-    with subprocess.Popen(command(tmp_path, begin + "run 100000000\n"), cwd=tmp_path, env=ENVIRONMENT,
-                          stdout=subprocess.DEVNULL) as running:
-        try:
-            step = last_whole_restart(tmp_path, running)
-        finally:
-            running.kill()
-    assert running.returncode == -signal.SIGKILL
-    steps = step + 200
-    lammps(tmp_path, restarted(step) + fixes + f"run {steps - step}\n" + state("again"))
-    lammps(tmp_path, begin + f"run {steps}\n" + state("on"))
-    on = read(tmp_path, "on")
-    assert max(abs(row[6]) for row in on) > 1e-3, "nothing happened"
-    assert difference(on, read(tmp_path, "again")) < 1e-12, f"killed after step {step}"
-
-
 def test_tied_grains_move_as_one(tmp_path):
     text = (BEGIN + BOX + grains(1.0, 0.0) + MASS + "pair_coeff * *\nfix nve all nve/sphere\n"
             + "velocity all create 1e22 4711 dist gaussian\n"
@@ -221,73 +193,6 @@ def test_tied_grains_move_as_one(tmp_path):
     assert rows[1][1] < 0.1 * rows[0][1]
     for before, after in zip(rows[1:], rows[2:]):
         assert after[1] == pytest.approx(before[1], rel=1e-4), "grains move apart, or ties explode"
-
-
-# A solid ball of 0.3 kg and 5 cm on a plane, as in tests/laws/rolling: closed forms of rolling and twisting resistance.
-RADIUS, MASS_OF_BALL, GRAVITY, RHO, TAU = 0.05, 0.3, 9.81, 0.002, 0.001
-ROLLING = f"rolling friction 0.5 rolling_friction {RHO} twisting_friction {TAU}"
-STEPS_OF_BALLS = some("1e-4", "3.7e-4", "7.3e-4")
-
-
-def balls(dt, *places, law=ROLLING, wall="plane 0 0 0 0 0 1"):
-    """Balls at rest on a wall, without forces."""
-    begin = BEGIN.replace("1.2", "0.12").replace("neighbor 0.3", "neighbor 0.03")
-    return (begin.replace("timestep 1e-3", f"timestep {dt}")
-            + "region box block -1 3 -1 1 -0.2 0.3 units box\ncreate_box 1 box\n"
-            + "".join(f"create_atoms 1 single {x} {y} {RADIUS} units box\n" for x, y in places)
-            + f"set type 1 diameter {2 * RADIUS} density {MASS_OF_BALL / (4 / 3 * math.pi * RADIUS**3)!r}\n"
-            + "".join(f"group ball{k} id {k}\n" for k in range(1, len(places) + 1))
-            + "pair_coeff * *\nfix nve all nve/sphere\nthermo_modify norm no\n", f"fix w all ilaw/wall {law} {wall}\n")
-
-
-def pull(ball, slope=0.0):
-    """Gravity on a plane that falls by this angle along x."""
-    return f"fix g{ball} ball{ball} gravity {GRAVITY} vector {math.sin(slope)!r} 0 {-math.cos(slope)!r}\n"
-
-
-def steps_until(time, dt):
-    return round(time / float(dt))
-
-
-# While it rolls 7/5 a = -rho g/R. The velocity of each step is that of its middle: the sum errs by a h^2/8 at most.
-@pytest.mark.parametrize("dt", STEPS_OF_BALLS)
-def test_a_ball_rolls_out(tmp_path, dt):
-    begin, wall = balls(dt, (0, 0))
-    lammps(tmp_path, begin + pull(1) + f"velocity all set 1 0 0\nset atom 1 omega 0 {1 / RADIUS} 0\n" + wall
-           + f"run {steps_until(4, dt)}\n" + state("end") + "variable lost equal f_w[6]+f_w[7]\n"
-           + "print \"$(v_lost:%.17g)\" file lost\n")
-    (_, x, y, z, *motion), = read(tmp_path, "end")
-    a = RHO * GRAVITY / (1.4 * RADIUS)
-    assert 0.5 / a == pytest.approx(1.783894, abs=1e-6)
-    assert x == pytest.approx(0.5 / a, abs=a * float(dt) ** 2 / 8 + 1e-10)
-    assert max(map(abs, [y, z - RADIUS, *motion])) < 1e-13
-    assert float((tmp_path / "lost").read_text()) == pytest.approx(0.7 * MASS_OF_BALL, rel=1e-11)
-
-
-# Pressed together by F: one pair turns like two gears, the other about the line of its centres. Each grain loses
-# rho F or tau F of its spin's moment, the other grain's being the opposite.
-@pytest.mark.parametrize("dt, ranks", some(("1e-4", 2), ("3.7e-4", 1), ("7.3e-4", 4)))
-def test_moments_act_on_both_grains_of_a_pair(tmp_path, dt, ranks):
-    force, spin = 2.0, 10.0
-    inertia = 0.4 * MASS_OF_BALL * RADIUS**2
-    steps = steps_until(0.5 * inertia * spin / (RHO * force), dt)
-    begin, _ = balls(dt, (0.95, -0.5), (1.05, -0.5), (0.95, 0.5), (1.05, 0.5))
-    text = (f"processors {min(ranks, 2)} * 1\n" + begin + f"set atom 1 omega 0 0 {spin}\nset atom 2 omega 0 0 -{spin}\n"
-            + f"set atom 3 omega {spin} 0 0\nset atom 4 omega -{spin} 0 0\n"
-            + "group left id 1 3\ngroup right id 2 4\n"
-            + f"fix l left addforce {force} 0 0\nfix r right addforce -{force} 0 0\n"
-            + f"fix p all ilaw/pair {ROLLING}\nrun {steps}\n" + state("half")
-            + f"run {steps_until(inertia * spin / (TAU * force), dt)}\n" + state("end")
-            + "variable lost equal f_p[6]\nprint \"$(v_lost:%.17g)\" file lost\n")
-    lammps(tmp_path, text, ranks)
-    rolls, twists = (spin - moment * force * steps * float(dt) / inertia for moment in (RHO, TAU))
-    half = read(tmp_path, "half")
-    expected = [(0, 0, rolls), (0, 0, -rolls), (twists, 0, 0), (-twists, 0, 0)]
-    for row, spins in zip(half, expected):
-        assert row[7:] == pytest.approx(spins, abs=1e-9)
-        assert max(map(abs, row[4:7])) < 1e-12
-    assert max(abs(number) for row in read(tmp_path, "end") for number in row[4:]) < 1e-11
-    assert float((tmp_path / "lost").read_text()) == pytest.approx(4 * 0.5 * inertia * spin**2, rel=1e-10)
 
 
 def test_ranks_agree_on_moments_to_the_tolerance(tmp_path):
@@ -311,6 +216,7 @@ def test_a_pile_at_rest_needs_few_iterations(tmp_path):
 # Grains collide and fly apart: without other forces what they lose is what friction, rolling and twisting take.
 @pytest.mark.parametrize("dt", some("1e-3", "7.3e-4", "3.1e-4"))
 def test_moments_dissipate_what_the_grains_lose(tmp_path, dt):
+    steps = round(3 / float(dt))
     text = (BEGIN.replace("timestep 1e-3", f"timestep {dt}")
             + "region box block -20 20 -20 20 -20 20\ncreate_box 1 box\n" + grains(1.2) + MASS + "pair_coeff * *\nfix nve all nve/sphere\n"
             + "variable inward atom 1.7-x\nvelocity all set v_inward 1 0.5\n"
@@ -318,45 +224,57 @@ def test_moments_dissipate_what_the_grains_lose(tmp_path, dt):
             + "compute spins all erotate/sphere\ncompute flight all ke\nvariable energy equal c_flight+c_spins\n"
             + f"fix p all ilaw/pair {RESISTING[1]} restitution 0.5 sweeps 2000 tol 1e-12\n"
             + "thermo_style custom step v_energy f_p[1] f_p[6] f_p[7]\n"
-            + f"thermo_modify format float %.15g\nthermo {steps_until(3, dt)}\nrun {steps_until(3, dt)}\n")
+            + f"thermo_modify format float %.15g\nthermo {steps}\nrun {steps}\n")
     first, last = thermo(lammps(tmp_path, text))
     assert last[2] == 0, "they still touch"
     assert last[3] > 0.1 and last[1] + last[3] + last[4] == pytest.approx(first[1], rel=1e-9)
 
 
-# A ball that rolls on a turntable moves on a circle at 2/7 of its angular velocity (Burns 1981); a ball at its axis
-# is spun up by twisting friction, I dw/dt = tau m g.
-@pytest.mark.parametrize("dt", STEPS_OF_BALLS)
-def test_a_wall_that_spins_takes_balls_along(tmp_path, dt):
-    turns = 7.0
-    begin, wall = balls(dt, (0, 0), law=f"rolling friction 0.5 twisting_friction {TAU}",
-                        wall=f"plane 0 0 0 0 0 1 spin 0 0 {turns}")
-    steps = steps_until(0.5 * 0.4 * RADIUS**2 * turns / (TAU * GRAVITY), dt)
-    lammps(tmp_path, begin + pull(1) + wall + f"run {steps}\n" + state("up") + f"run {2 * steps}\n" + state("top"))
-    assert read(tmp_path, "up")[0][9] == pytest.approx(TAU * GRAVITY * steps * float(dt) / (0.4 * RADIUS**2), rel=1e-10)
-    assert read(tmp_path, "top")[0][9] == pytest.approx(turns, rel=1e-12)
-    assert max(map(abs, read(tmp_path, "top")[0][4:9])) < 1e-12
+def floor_of(case):
+    return "" if not case.floor else "plane 0 0 0 0 0 1" + (f" spin 0 0 {case.spin}" if case.spin else "")
 
-    begin, wall = balls(dt, (0, 0.5), law="rolling friction 0.5", wall=f"plane 0 0 0 0 0 1 spin 0 0 {turns}")
-    # From rest it would slip: it begins with 2/7 of the table's velocity and rolls on it.
-    rolls = -turns * 0.5 * 2 / 7
-    spin = (rolls + turns * 0.5) / RADIUS
-    steps = steps_until(math.pi / (2 / 7 * turns), dt)
-    lammps(tmp_path, begin + pull(1) + f"velocity all set {rolls!r} 0 0\nset atom 1 omega 0 {spin!r} 0\n" + wall
-           + f"run {steps}\n" + state("half"))
-    angle = 2 / 7 * turns * steps * float(dt)
-    (_, x, y, *_), = read(tmp_path, "half")
-    assert (x, y) == pytest.approx((-0.5 * math.sin(angle), 0.5 * math.cos(angle)), abs=20 * float(dt) ** 2)
+
+def roll(tmp_path, case, wall, dt, ranks=1):
+    """x, v and w of the spheres of a case at each of its ends, and the energy that they lost."""
+    law = " ".join([case.law, *(f"{name} {value}" for name, value in case.parameters.items())])
+    text = (BEGIN.replace("1.2", "0.12").replace("neighbor 0.3", "neighbor 0.03").replace("timestep 1e-3", f"timestep {dt}")
+            + f"processors {min(ranks, 2)} * 1\nregion box block -1 3 -1 1 -0.2 0.3 units box\ncreate_box 1 box\n"
+            + f"set type 1 diameter {2 * spheres.RADIUS} "
+            + f"density {spheres.MASS / (4 / 3 * math.pi * spheres.RADIUS**3)!r}\n")
+    made, moves = "", ""
+    for k, one in enumerate(case.spheres, 1):
+        x, v, w, force = (" ".join(repr(float(number)) for number in vector) for vector in one)
+        made += f"create_atoms 1 single {x} units box\n"
+        moves += (f"group ball{k} id {k}\nvelocity ball{k} set {v}\nset atom {k} omega {w}\n"
+                  f"fix force{k} ball{k} addforce {force}\n")
+    before, behind = text.split("set type", 1)
+    text = before + made + "set type" + behind + moves + "pair_coeff * *\nfix nve all nve/sphere\nthermo_modify norm no\n"
+    fix = f"wall {law} {wall}" if wall else f"pair {law}"
+    text += f"fix law all ilaw/{fix}\nvariable lost equal f_law[6]+f_law[7]\n"
+    done = 0
+    for k, steps in enumerate(spheres.steps_of(case, float(dt))):
+        text, done = text + f"run {steps - done}\n" + state(f"end{k}"), steps
+    lammps(tmp_path, text + 'print "$(v_lost:%.17g)" file lost\n', ranks)
+    found = [[atom[1:] for atom in read(tmp_path, f"end{k}")] for k in range(len(case.ends))]
+    return found, float((tmp_path / "lost").read_text())
+
+
+@pytest.mark.parametrize("dt", some("1e-4", "3.7e-4", "7.3e-4"))
+@pytest.mark.parametrize("name", spheres.CASES)
+def test_spheres_turn_as_closed_forms_say(tmp_path, name, dt):
+    case = spheres.CASES[name]
+    ranks = 2 if not case.floor else 1  # spheres of a pair on either side of the border
+    spheres.judge(case, float(dt), *roll(tmp_path, case, floor_of(case), dt, ranks))
 
 
 # A ball at the bottom of a drum that rolls on it as fast as the drum turns stays where it is.
 @pytest.mark.parametrize("shape", ["cylinder 0 0 0.2 1 0 0", "sphere 0 0 0.2"])
 def test_a_ball_rolls_in_place_in_a_drum(tmp_path, shape):
     turns = 3.0
-    begin, wall = balls("1e-3", (0, 0), law="rolling friction 0.5", wall=f"{shape} 0.2 inside spin {turns} 0 0")
-    lammps(tmp_path, begin + pull(1) + f"set atom 1 omega {turns * 0.2 / RADIUS} 0 0\n" + wall + "run 1000\n"
-           + state("end"))
-    assert read(tmp_path, "end")[0][1:] == pytest.approx([0, 0, RADIUS, 0, 0, 0, turns * 0.2 / RADIUS, 0, 0], abs=1e-12)
+    place = [0, 0, spheres.RADIUS, 0, 0, 0, turns * 0.2 / spheres.RADIUS, 0, 0]
+    ball = spheres.Sphere(place[:3], w=place[6:])
+    drum = spheres.Case("drum", "", "rolling", {"friction": 0.5}, [ball], [(1.0, lambda t, h: (spheres.row(*place), 1e-12))])
+    spheres.judge(drum, 1e-3, *roll(tmp_path, drum, f"{shape} 0.2 inside spin {turns} 0 0", "1e-3"))
 
 
 @pytest.mark.parametrize("wall, lowest", [("cylinder 1.6 1.6 1.6 1 0 0 1.5 inside", 0.6),

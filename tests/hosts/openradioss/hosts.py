@@ -1,8 +1,10 @@
-"""Both hosts of api/openradioss: the hook of a deck, in the cycle of engine.py, and the user library, which stub.cpp
+"""Both hosts of api/openradioss: the hook of a deck, in the cycle of engine.py, and the user library, which stub.py
 loads and calls as starter and engine do."""
 import os
 import subprocess
+import sys
 import typing
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -43,7 +45,8 @@ def traced(engine, hook, steps):
 
 
 def call(folder, *words):
-    command = [os.environ["ILAW_RADIOSS_STUB"], os.environ["ILAW_RADIOSS_LIBRARY"], *map(str, words)]
+    given = os.environ["ILAW_RADIOSS_STUB"], os.environ["ILAW_RADIOSS_LIBRARY"]
+    command = [sys.executable, str(Path(__file__).with_name("stub.py")), *given, *map(str, words)]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True)
 
 

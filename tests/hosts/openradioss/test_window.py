@@ -1,6 +1,4 @@
-"""The user library of api/openradioss without OpenRadioss: stub.cpp loads and calls it as starter and engine do."""
-import struct
-
+"""The user library of api/openradioss without OpenRadioss: stub.py loads and calls it as starter and engine do."""
 import ilaw_openradioss_window
 import numpy as np
 import pytest
@@ -64,15 +62,13 @@ def test_what_a_deck_or_a_restart_file_lacks_is_said(tmp_path):
 def test_a_restart_file_of_another_library_is_refused(tmp_path):
     assert not start(tmp_path, MEMORY, PULLED).stderr
     run(tmp_path, 10, 1e-3)
-    data = (tmp_path / "restart").read_bytes()  # ends with the number of doubles of the window, and these
-    size = next(k for k in range(5, 99) if data[-8 * k - 8 : -8 * k] == struct.pack("Q", k))
-    head = data[: -8 * size - 8]
-    memory = np.frombuffer(data[-8 * size :])
+    model = dict(np.load(tmp_path / "restart.npz"))
+    memory = model["memory"]
     for other, says in (
-        (np.r_[memory, 0.0], f"found {size + 1} numbers, expected {size}"),
+        (np.r_[memory, 0.0], f"found {memory.size + 1} numbers, expected {memory.size}"),
         (np.r_[memory[0], memory[1] + 1.0, memory[2:]], "found another version of the state of 'cohesive'"),
     ):
-        (tmp_path / "restart").write_bytes(head + struct.pack("Q", other.size) + other.tobytes())
+        np.savez(tmp_path / "restart.npz", **model | {"memory": other})
         done = call(tmp_path, "run", 1, 1e-3)
         assert done.returncode == 2 and "restart file: " + says in done.stderr, done.stderr
 

@@ -1,4 +1,5 @@
-"""Interfaces and batches: values against closed forms, no copies, refusals that say what is wrong."""
+"""Interfaces and batches: values against closed forms, no copies, refusals that say what is wrong. Forms of H against the
+coupled solver: test_solver_machine.py."""
 import gc
 import pickle
 import threading
@@ -139,26 +140,6 @@ def test_parameters_per_node_and_by_table():
     np.testing.assert_allclose(per_node.impulse, friction_by_hand(v, m, friction), rtol=4e-15, atol=1e-15)
     table = coulomb(friction=[(0.0, 0.0), (0.2, 0.4)])
     np.testing.assert_allclose(evaluated(v, m, table).impulse, friction_by_hand(v, m, 0.2), rtol=1e-14, atol=1e-15)
-
-
-def test_full_h_in_the_order_of_the_header():
-    v, m = pressed()
-    law = coulomb(friction=np.inf)
-    full = ilaw.Interface("coulomb", delassus="full", velocity_step=1e-3, friction=np.inf)
-    h = np.array([3.0, 2.0, 1.0, 0.3, 0.2, 0.1])  # 00, 11, 22, 01, 02, 12
-    matrix = np.array([[3.0, 0.3, 0.2], [0.3, 2.0, 0.1], [0.2, 0.1, 1.0]])
-    batch = evaluated(v, m, full, delassus=h)
-    np.testing.assert_allclose(batch.impulse, -np.linalg.solve(matrix, v.T).T, rtol=1e-12)
-    assert law.delassus_components == 1 and full.delassus_components == 6
-
-
-def test_transverse_h_of_rolling_spheres():
-    v, m = pressed()
-    transverse = ilaw.Interface("coulomb", delassus="transverse", velocity_step=1e-3, friction=np.inf)
-    batch = evaluated(v, m, transverse, delassus=np.stack([1 / m, 3.5 / m], axis=1))
-    expected = -m[:, None] * v / np.where(UP, 1.0, 3.5)
-    np.testing.assert_allclose(batch.impulse, expected, rtol=4e-15, atol=1e-15)
-    assert transverse.delassus_components == 2
 
 
 def test_spins_and_moments():

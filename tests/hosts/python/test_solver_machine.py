@@ -2,8 +2,9 @@
 starts, steps that are repeated, refusals, other threads, processes, ranks and problems.
 
 A solver keeps its memory and none of the numbers in it. So each solve must have the bits of a new solver, with the
-contacts in another order as well; and the laws alone, asked at the velocities that came out, must answer with the
-impulses. A sequence that fails is shortened. ILAW_SOLVER_SEED draws others, ILAW_SOLVER_SEQUENCES more of them.
+contacts in another order as well, unless they have the same bodies; and the laws alone, asked at the velocities that
+came out, must answer with the impulses. A sequence that fails is shortened. ILAW_SOLVER_SEED draws others,
+ILAW_SOLVER_SEQUENCES more of them.
 """
 import os
 import pathlib
@@ -66,7 +67,22 @@ class Lattice(typing.NamedTuple):
     by: str = ""
 
 
-REFUSALS = {"tolerance": {"tolerance": np.nan}, "rounding": {"rounding": np.inf}, "speed": {"speed": -1.0}}
+class NoNumbers:
+    """Ranks whose largest number is none."""
+
+    def sum_bodies(self, values):
+        pass
+
+    def sum(self, values):
+        pass
+
+    def largest(self, values):
+        values[:] = np.nan
+
+
+# By a word of the reason. The last two are of bodies and groups, the others of a solve.
+REFUSALS = {"tolerance": {"tolerance": np.nan}, "rounding": {"rounding": np.inf}, "speed": {"speed": -1.0},
+            "exchange": {"exchange": NoNumbers()}, "inverse_mass": {"inverse_mass": np.nan}, "twice": {"twice": True}}
 
 
 class Kind:
@@ -247,7 +263,9 @@ class Machine:
             for array in (self.v + [0, 0, -G * H], self.v, self.w, self.w, kind.mass, kind.inertia))
         turns = {"spin_free": w, "spin_previous": w_previous, "inverse_inertia": 1 / inertia} if kind.rotates else {}
         owned = {"owned": BODIES // 2} if "exchange" in options else {}
-        bodies = Bodies(v_free=v, v_previous=v_previous, inverse_mass=1 / mass, **turns, **owned)
+        inverse_mass = 1 / mass
+        inverse_mass[-1] = options.pop("inverse_mass", inverse_mass[-1])
+        bodies = Bodies(v_free=v, v_previous=v_previous, inverse_mass=inverse_mass, **turns, **owned)
         bad = self.order[int(action.bad * len(self.order))] if action.bad >= 0 and self.order else None
         groups, chosen = [], []
         for law in range(len(kind.laws)):
@@ -257,6 +275,7 @@ class Machine:
             moment = moment if kind.form == "transverse_spin" else None
             groups.append(kind.contacts(law, mine, impulse, moment, state, bad, first))
             chosen.append(mine)
+        groups += groups[:1] * options.pop("twice", False)
         before = [[array.copy() for array in outputs(bodies, group)] for group in groups]
         try:
             report = solver.solve(bodies, groups, time=(self.steps + 1) * H, bad_nodes="report",
@@ -272,10 +291,15 @@ class Machine:
         v, w = (np.roll(array, first, axis=0) for array in (bodies.velocity, bodies.spin if kind.rotates else w))
         return Found(contacts, v, w, said), report
 
+    def bodies_of(self, contact):
+        return self.kind.body[contact], self.kind.counterpart[contact]
+
     def solve(self, action):
         new, report = self.call(Solver(), self.order, action)
-        other, _ = self.call(Solver(), sorted(self.order), action)
+        # Contacts of the same bodies keep their order: it decides which of several solutions is found.
+        other, _ = self.call(Solver(), sorted(self.order, key=self.bodies_of), action)
         demand(new == other, "the order of contacts changes bits")
+        self.judge(action, *self.call(Solver(), self.order[::-1], action))
         solves = [lambda: self.call(self.solver, self.order, action)] * (2 if action.by == "both" else 1)
         if action.by == "child":
             solves.append(lambda: self.same(new, self.call(self.solver, self.order, action)))
@@ -361,6 +385,8 @@ class Machine:
             demand(off < 1e-8, "a law alone answers otherwise, by", off)
 
     def refuse(self, action):
+        if action.how == "exchange" and not self.order:
+            return  # ranks without contacts have nothing to agree on
         found, error = self.call(self.solver, self.order, Solve(), **REFUSALS[action.how])
         demand(found is None, "not refused:", action.how)
         demand(action.how in str(error), "refused with", error)

@@ -4,6 +4,7 @@ import json
 import sys
 
 import numpy as np
+import spheres
 from ilaw_yade import Contacts
 from yade import *
 from yade import utils
@@ -55,60 +56,22 @@ def changed():
     return {"v": [velocity(0)[0], velocity(1)[0]], "m": [O.bodies[i].state.mass for i in (0, 1)]}
 
 
-def roll(dt):
-    """Slides on a wall with velocity 2, friction 0.1, gravity 10: rolls from 2 u/(7 mu g) on, with 5/7 of it."""
-    scene("coulomb", [((0, 0, 0.5), 0.5, (2, 0, 0))], [(2, 1)], (0, 0, -10), dt, friction=0.1, tolerance=1e-10)
-    rows = []
-    for _ in range(round(0.62 / dt)):
-        O.step()
-        state = O.bodies[0].state
-        rows.append([O.time, state.vel[0], state.angVel[1]])
-    rows = np.array(rows)
-    rolls = np.abs(rows[:, 1] - 0.5 * rows[:, 2]) < 1e-7
-    return {"from": rows[rolls][0, 0], "v": rows[-1, 1], "height": O.bodies[0].state.pos[2]}
-
-
-# Of balls of 5 cm. That a ball rolls out is tested by examples/roll.py.
-RESISTANCE = {"friction": 0.5, "rolling_friction": 0.002, "twisting_friction": 0.001}
-
-
-def top(dt):
-    """Spins on a wall that spins the other way: its spin at 0.7 of the time in which it takes the wall's, and then."""
-    stops = 0.4 * 0.05**2 * 15 / (0.001 * 9.81)
-    scene("rolling", [((0, 0, 0.05), 0.05, (0, 0, 0))], [(2, 1)], (0, 0, -9.81), dt, **RESISTANCE)
-    state, early = O.bodies[0].state, round(0.7 * stops / dt)
-    state.angVel = (0, 0, 10)
-    O.bodies[1].state.angVel = (0, 0, -5)
-    O.run(early, True)
-    spin = state.angVel[2]
-    O.run(round(stops / dt) + 1 - early, True)
-    return {"spin": spin, "expected": 10 - 15 * early * dt / stops, "end": [*state.vel, *(0.05 * state.angVel)]}
-
-
-def gears(dt):
-    """Two spheres, pressed together, turn like gears: each loses rho F of its spin's moment."""
-    scene("rolling", [((-0.05, 0, 0), 0.05, (0, 0, 0)), ((0.05, 0, 0), 0.05, (0, 0, 0))], dt=dt, **RESISTANCE)
-    force, inertia = 1e-3, O.bodies[0].state.inertia[0]
-    for number, sense in ((0, 1), (1, -1)):
-        O.bodies[number].state.angVel = (0, 0, 5.0 * sense)
-        O.forces.setPermF(number, (sense * force, 0, 0))
-    steps = round(0.5 * inertia * 5.0 / (0.002 * force) / dt)
-    O.run(steps, True)
-    spins = [list(O.bodies[i].state.angVel) for i in (0, 1)]
-    lost = 0.5 * inertia * sum(25.0 - spin[2] ** 2 for spin in spins)
-    expected = 5.0 - 0.002 * force * steps * dt / inertia
-    return {"spins": spins, "expected": expected, "v": velocity(0), "lost": float(contacts.energy.sum()) / lost}
-
-
-def turntable(dt):
-    """A wall that spins at 7 rad/s: a ball that rolls on it from 0.5 m off its axis, half a circle later."""
-    scene("rolling", [((0, 0.5, 0.05), 0.05, (-1, 0, 0))], [(2, 1)], (0, 0, -9.81), dt, friction=0.5)
-    state = O.bodies[0].state
-    state.angVel = (0, (7 * 0.5 - 1) / 0.05, 0)
-    O.bodies[1].state.angVel = (0, 0, 7)
-    steps = round(np.pi / 2 / dt)
-    O.run(steps, True)
-    return {"place": list(state.pos)[:2], "angle": 2 * steps * dt}
+def turning(case, dt):
+    """x, v and w of the spheres of a case at its ends, and the energy that contacts took."""
+    placed = [(one.x, spheres.RADIUS, one.v) for one in case.spheres]
+    scene(case.law, placed, [(2, 1)] if case.floor else [], dt=dt, tolerance=1e-12, sweeps=100, **case.parameters)
+    for k, one in enumerate(case.spheres):
+        state = O.bodies[k].state
+        state.mass, state.inertia, state.angVel = spheres.MASS, 3 * [spheres.INERTIA], one.w
+        O.forces.setPermF(k, one.force)
+    if case.floor:
+        O.bodies[len(placed)].state.angVel = (0, 0, case.spin)
+    found, done = [], 0
+    for steps in spheres.steps_of(case, dt):
+        O.run(steps - done, True)
+        states, done = [O.bodies[k].state for k in range(len(placed))], steps
+        found.append([[*state.pos, *state.vel, *state.angVel] for state in states])
+    return found, float(contacts.energy.sum())
 
 
 def column():
@@ -181,13 +144,10 @@ def refused():
 
 STEPS = (2e-3, 1.3e-3, 1.7e-3)
 figures = {
-    "tops": {str(dt): top(dt) for dt in STEPS},
-    "gears": {str(dt): gears(dt) for dt in STEPS},
-    "turntables": {str(dt): turntable(dt) for dt in STEPS},
+    "turning": {name: [(dt, *turning(case, dt)) for dt in STEPS] for name, case in spheres.CASES.items()},
     "goes on with moments": goes_on_with_moments(),
     "changed": changed(),
     "collisions": {str(e): collision(e) for e in (0.0, 0.5, 1.0)},
-    "rolls": {str(dt): roll(dt) for dt in (2e-3, 1.3e-3, 1.7e-3)},
     "column": column(),
     "goes on": goes_on(),
     "refused": refused(),

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The engine of api/yade in the system's Yade, headless: closed forms, refusals, runs that go on, the example.
-One sphere that does not turn: tests/hosts/protocols."""
+One sphere that does not turn: tests/hosts/protocols. Spheres that turn: tests/hosts/spheres.py."""
 import json
 import os
 import re
@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import spheres
 
 YADE = Path(os.environ["ILAW_SOURCE"]) / "api/yade"
 
@@ -41,33 +42,10 @@ def test_bodies_and_engines_may_change(figures):
     assert v == pytest.approx([-m2 / (m1 + m2)] * 2, rel=1e-12)
 
 
-def test_sliding_becomes_rolling(figures):
-    begins = 2 * 2.0 / (7 * 0.1 * 10)
-    for dt, found in figures["rolls"].items():
-        assert found["v"] == pytest.approx(2.0 * 5 / 7, rel=1e-12), dt
-        assert 0 <= found["from"] - begins <= 2 * float(dt), dt
-        assert found["height"] == pytest.approx(0.5, abs=1e-14), dt
-
-
-def test_a_top_takes_the_spin_of_its_wall(figures):
-    for dt, found in figures["tops"].items():
-        assert found["spin"] == pytest.approx(found["expected"], rel=1e-10), dt
-        np.testing.assert_allclose(found["end"], [0, 0, 0, 0, 0, 0.05 * -5], atol=1e-12, err_msg=dt)
-
-
-def test_moments_act_on_both_spheres(figures):
-    for dt, found in figures["gears"].items():
-        expected = [[0, 0, found["expected"]], [0, 0, -found["expected"]]]
-        np.testing.assert_allclose(found["spins"], expected, atol=1e-10, err_msg=dt)
-        np.testing.assert_allclose(found["v"], 0, atol=1e-12, err_msg=dt)
-        assert found["lost"] == pytest.approx(1, abs=1e-9), dt
-
-
-# It moves on a circle, at 2/7 of the table's angular velocity (Burns 1981).
-def test_a_wall_that_spins_takes_a_ball_along(figures):
-    for dt, found in figures["turntables"].items():
-        circle = [-0.5 * np.sin(found["angle"]), 0.5 * np.cos(found["angle"])]
-        np.testing.assert_allclose(found["place"], circle, atol=float(dt), err_msg=dt)
+@pytest.mark.parametrize("name", spheres.CASES)
+def test_spheres_turn_as_closed_forms_say(figures, name):
+    for dt, found, lost in figures["turning"][name]:
+        spheres.judge(spheres.CASES[name], dt, found, lost, starts_late=True)
 
 
 def test_a_column_stays(figures):

@@ -1,5 +1,5 @@
 // Laws with one mistake each, and what the compiler is to say of it: the comment above the law. Never built:
-// mistakes_test.cpp has its syntax checked, and reads the answer.
+// mistakes_test.py has its syntax checked, and reads the answer.
 #include <ilaw/kit.hpp>
 
 using namespace ilaw::kit;

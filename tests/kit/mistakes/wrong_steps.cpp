@@ -1,5 +1,5 @@
 // The same for mistakes within a function of a law, which compilers look at where there is no other. Never built:
-// mistakes_test.cpp has its syntax checked, and reads the answer.
+// mistakes_test.py has its syntax checked, and reads the answer.
 #include <ilaw/kit.hpp>
 
 #include <cmath>

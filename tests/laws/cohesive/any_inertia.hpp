@@ -2,9 +2,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bond.hpp"
+#include "support/law_runner.hpp"
 
 namespace ilaw::testing {
+
+inline constexpr const char* several_solutions =
+    "the law's equations have several solutions for this H and step: a smaller step is needed";
+
+// Bonds at random.
+struct Draw : Random {
+  using Random::Random;
+
+  // Any bond: of any shape, rigid or not, with its mixed mode, friction and delay.
+  Parameters bond() {
+    const bool is_delayed = between(0.0, 1.0) < 0.2;
+    const char* shapes[] = {"bilinear", "exponential", "camacho_ortiz"};
+    const std::string shape = shapes[static_cast<int>(between(0.0, is_delayed ? 2.0 : 3.0))];
+    const double strength = between(0.5, 2.0), strength_2 = between(0.5, 4.0), toughness = between(0.5, 2.0);
+    Parameters p{{{"strength", strength}, {"strength_2", strength_2}, {"toughness", toughness}},
+                 {{"shape", shape}}};
+    p.numbers["friction"] = between(0.0, 1.0) < 0.3 ? 0.0 : between(0.0, 1.5);
+    if (shape != "camacho_ortiz") {
+      p.numbers["toughness_2"] = between(0.5, 4.0);
+      p.numbers["mixing_exponent"] = between(0.3, 3.0);
+      if (is_delayed || between(0.0, 1.0) < 0.7) p.numbers["stiffness"] = decades(1.5, 9.0);
+    }
+    if (is_delayed)
+      p.numbers.insert({{"delay_time", decades(-2.0, 1.0)}, {"delay_exponent", decades(-1.0, 2.0)}});
+    return p;
+  }
+};
 
 inline double norm(const Vector& a) { return std::hypot(a[0], a[1], a[2]); }
 

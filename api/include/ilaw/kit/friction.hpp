@@ -154,8 +154,9 @@ ILAW_KIT_INLINE fraction<V> root_of_work(V c2, V c1, V c0) {
   return {select(c1 <= 0.0, root - c1, -2.0 * c0), select(c1 <= 0.0, 2.0 * c2, root + c1)};
 }
 
-// A part that rounding cannot tell from 1: the contact sticks.
-inline constexpr double sticking_part = 1.0 - 0x1p-46;
+// A part that rounding cannot tell from 1: the contact sticks. It also sticks where the slip that is left is
+// rounding beside the speed that the impulse can stop: an obstacle that moves leaves that much.
+inline constexpr double sticking_part = 1.0 - 0x1p-46, rounding_of_slip = 0x1p-36;
 
 // The tangential impulse -factor q_T, and the status where the contact is pressed.
 template <class V>
@@ -168,10 +169,10 @@ struct friction_factor {
 // of the whole impulse, times 2 h_T, is s^2 q_T^2 - s q_T.(q_T + rest_T) + h_T r_N rest_N, and must not be
 // positive: the part is less than 1 only where the motion turned round within the step, as it does on a stiff
 // spring, and the impact takes less than it costs to stop that from behind. speed: that of q_T; along:
-// speed.down q_T.rest_T.
+// speed.down q_T.rest_T; rounded: part of the speed that the impulse can stop, of which a slip is none.
 template <class V>
-ILAW_KIT_INLINE friction_factor<V> rub(V h_t, V normal, scaled_length<V> speed, V along, V rest_n,
-                                       V friction) {
+ILAW_KIT_INLINE friction_factor<V> rub(V h_t, V normal, scaled_length<V> speed, V along, V rest_n, V friction,
+                                       double rounded = rounding_of_slip) {
   const V impact = h_t * (speed.down * normal) * rest_n,
           limit = speed.down * friction_limit(friction, normal);
   const V slip = speed.root();
@@ -186,7 +187,10 @@ ILAW_KIT_INLINE friction_factor<V> rub(V h_t, V normal, scaled_length<V> speed, 
     const V numerator = select(gains, zero_unless(!far, part.numerator), 1.0);
     const V denominator = select(gains & !far, part.denominator, 1.0);
     const V whole = h_t * denominator;
-    const auto slides = slip * numerator > limit * whole, turns = numerator < sticking_part * denominator;
+    const auto slides = slip * numerator > limit * whole;
+    const V stopped = rounded * (smaller(limit, speed.down * normal) * whole);
+    const auto turns =
+        (numerator < sticking_part * denominator) & (slip * (denominator - numerator) > stopped);
     factor = select(slides, limit, numerator) / select(slides, slip, whole);
     code = select(slides | turns, V(status::slip.code), V(status::stick.code));
   }
@@ -206,13 +210,14 @@ ILAW_KIT_INLINE auto pressing_impulse(const Delassus& h, const contact_problem<V
 template <class Node, class Vector>
 ILAW_KIT_INLINE status_of<number_of<Node>> apply_isotropic_friction(Node& node,
                                                                     const contact_problem<Vector>& contact,
-                                                                    number_of<Node> friction) {
+                                                                    number_of<Node> friction,
+                                                                    double rounded = rounding_of_slip) {
   using V = number_of<Node>;
   const V normal = pressing_impulse(node.delassus, contact);
   const scaled_length<V> speed = contact.q.scaled_tangential_length();
   const V along = tangential_product(speed.down * contact.q, contact.rest);
   const friction_factor<V> found =
-      rub(node.delassus.tangential(), normal, speed, along, contact.rest.n, friction);
+      rub(node.delassus.tangential(), normal, speed, along, contact.rest.n, friction, rounded);
   node.impulse = contact.q.against(normal, found.factor);
   return select(normal > 0.0, found.status, status::free);
 }
@@ -295,7 +300,9 @@ void take_off_positive_work(const friction_problem<V>& p, friction_answer<V>& a)
   const V whole = select(gains, dissipative_part(r_a, r_n + (r_1 + r_2)), 1.0);
   for (int k = 0; k < 3; ++k) r[k] = r[k] * whole;
   const V moved = select(r[0] > 0.0, V(status::slip.code), V(status::free.code));
-  a.status = select(part * whole < sticking_part, moved, a.status);
+  const V kept = part * whole, left = (1.0 - kept) * (absolute(q[1]) + absolute(q[2]));
+  const V pressed = smaller(smaller(p.contact.mu[0], p.contact.mu[1]), 1.0) * r[0] * smaller(h[1], h[2]);
+  a.status = select((kept < sticking_part) & (left > rounding_of_slip * pressed), moved, a.status);
 }
 
 // Without coupling, and with one tangential entry or one tangential velocity, the closed form above holds.

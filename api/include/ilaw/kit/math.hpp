@@ -154,6 +154,9 @@ inline double exp(double x) { return detail::exponential(x); }
 inline double log(double x) { return detail::logarithm(x); }
 ILAW_KIT_INLINE pack_of_one exp(pack_of_one x) { return exp(x.v); }
 ILAW_KIT_INLINE pack_of_one log(pack_of_one x) { return log(x.v); }
+// Calls, lest a loop have several hundred bytes at each place. Two registers would be passed through memory.
+[[gnu::noinline]] inline pack exp(pack x) { return detail::exponential(x); }
+[[gnu::noinline]] inline pack log(pack x) { return detail::logarithm(x); }
 template <int Registers>
 ILAW_KIT_INLINE pack_of<Registers> exp(pack_of<Registers> x) {
   return detail::exponential(x);

@@ -125,16 +125,18 @@ struct window_rows {
         at[2 * stride] = rows[lane][3];
       }
   }
-  // Elsewhere -0 is added, which changes no number.
+  // To the number before a vector -0 is added, which changes none: it is a finite one where a node adds.
   ILAW_KIT_INLINE void add(mask where, std::int64_t k, vector<pack> a) const {
     if (stride != 1) return put(where, k, vector_at(k) + a);
+    const unsigned lanes = mask_bits(where);
     row rows[register_lanes];
-    to_rows(select(where, a, vector<pack>{-0.0, -0.0, -0.0}), -0.0, rows);
+    to_rows(a, -0.0, rows);
 #pragma GCC unroll 8
-    for (int lane = 0; lane < register_lanes; ++lane) {
-      const row sum = values{first[lane], 1}(k) + rows[lane];
-      __builtin_memcpy(first[lane] + k - 1, &sum, sizeof sum);
-    }
+    for (int lane = 0; lane < register_lanes; ++lane)
+      if (lanes >> lane & 1) {
+        const row sum = values{first[lane], 1}(k) + rows[lane];
+        __builtin_memcpy(first[lane] + k - 1, &sum, sizeof sum);
+      }
   }
 
  private:

@@ -28,6 +28,7 @@ struct instance_base {
   const ilaw_kit_part* part;       // of the level that the instance uses
   ilaw_kit_loop loop, float_loop;  // null: floats are converted to doubles
   careful_function careful;
+  scalar_function scalar;
 
   tangents tangents_from() const {
     if (dimension < 3) return tangents::of_plane;
@@ -95,7 +96,8 @@ inline view_options options_of(const instance_base& made, const ilaw_batch& b, s
           .has_balance = false,
           .has_amounts = false,
           .tables = made.node_tables,
-          .careful = made.careful};
+          .careful = made.careful,
+          .scalar = made.scalar};
 }
 
 // Flags that say what becomes of bonds are for instances that can hold them.

@@ -193,7 +193,7 @@ class instance_builder {
   instance_builder(instance<Law>& target, const ilaw_law& law, const ilaw_setup& setup, ilaw_message& text)
       : made_(target), abi_(law), setup_(setup), text_(text) {}
 
-  ilaw_result build() {
+  [[gnu::cold]] ilaw_result build() {
     ilaw_arguments given{};
     const ilaw_result read = ilaw_create_read(&abi_, &setup_, &given, &text_);
     if (read != ILAW_OK) ilaw_arguments_free(&given);
@@ -375,6 +375,8 @@ class instance_builder {
 
 template <class Law>
 careful_function choose_careful(const instance<Law>& made);
+template <class Law>
+scalar_function scalar_fallback();
 
 // law: its description.
 template <class Law>
@@ -396,6 +398,7 @@ ilaw_result create(const ilaw_law& law, const char* name, const ilaw_setup* setu
     made->loop = part.loop(made, false);
     made->float_loop = made->numbers == ILAW_NUMBERS_FLOAT ? part.loop(made, true) : nullptr;
     made->careful = choose_careful(*made);
+    made->scalar = scalar_fallback<Law>();
     *result = reinterpret_cast<ilaw_instance*>(made);
   } else {
     made->~instance<Law>();

@@ -85,7 +85,8 @@ ILAW_KIT_INLINE void get_packed(pack_of_one& v, unsigned lanes, const double* fr
 
 inline constexpr int problem_block = 128;  // nodes
 
-using solver_pack = pack_of<ILAW_KIT_IS_SPARE ? 1 : 2>;
+// Two registers hide the latency of a solver: with one it takes 1.1 to 1.4 times as long.
+using solver_pack = std::conditional_t<ILAW_KIT_IS_SPARE, pack_of_one, pack_of<2>>;
 
 template <class Struct, class V>
 inline constexpr int numbers_in_struct = static_cast<int>(sizeof(Struct) / sizeof(V));
@@ -145,7 +146,8 @@ struct open_problems {
   pass at;
 
   // In full packs; the last is filled up with its first problem. Returns how many the scalar fallback took.
-  [[gnu::noinline, gnu::flatten]] int solve(const Law& given, const step_sizes& step) {
+  [[gnu::noinline, gnu::flatten]] int solve(const Law& given, const step_sizes& step,
+                                            scalar_function scalar) {
     int by_fallback = 0;
     solver law = broadcast<solver_pack>(given);
     auto prepared = kit::prepared(law, step);
@@ -169,11 +171,26 @@ struct open_problems {
       if (const unsigned lanes = mask_bits(left)) [[unlikely]]
         for (int k = 0; k < filled; ++k)
           if (lanes >> k & 1) {
-            solve_scalar(given, step, first + k);
+            scalar(&given, &step, this, first + k);
             ++by_fallback;
           }
     }
     return by_fallback;
+  }
+  // A scalar_function.
+  [[gnu::noinline]] static void solve_scalar(const void* opaque, const void* step, void* block, int k) {
+    using scalar = law_on_t<Law, double>;
+    auto& own = *static_cast<open_problems*>(block);
+    scalar law = *static_cast<const Law*>(opaque);
+    for (int c = 0; c < parameter_count<Law>; ++c)
+      if (own.varying >> c & 1) scalar::parameters[c].member.set(law, own.parameter[c][k]);
+    typename scalar::problem p;
+    typename scalar::answer a{};
+    for (int c = 0; c < problems; ++c)
+      __builtin_memcpy(place_in<double>(p, c), own.problem[c] + k, sizeof(double));
+    solve_one(law, *static_cast<const step_sizes*>(step), p, a);
+    for (int c = 0; c < answers; ++c)
+      __builtin_memcpy(own.answer[c] + k, place_in<double>(a, c), sizeof(double));
   }
 
  private:
@@ -184,18 +201,6 @@ struct open_problems {
         __builtin_memcpy(static_cast<void*>(&solver::parameters[c].member.varying_in(law)),
                          parameter[c] + first, sizeof(solver_pack));
       }
-  }
-  [[gnu::noinline]] void solve_scalar(const Law& given, const step_sizes& step, int k) {
-    using scalar = law_on_t<Law, double>;
-    scalar law = given;
-    for (int c = 0; c < parameter_count<Law>; ++c)
-      if (varying >> c & 1) scalar::parameters[c].member.set(law, parameter[c][k]);
-    typename scalar::problem p;
-    typename scalar::answer a{};
-    for (int c = 0; c < problems; ++c)
-      __builtin_memcpy(place_in<double>(p, c), problem[c] + k, sizeof(double));
-    solve_one(law, step, p, a);
-    for (int c = 0; c < answers; ++c) __builtin_memcpy(answer[c] + k, place_in<double>(a, c), sizeof(double));
   }
 };
 
@@ -348,7 +353,7 @@ struct solver_kernel : kernel<Law, V, View, Frame, Delassus> {
           if (at.finishing) at.first += __builtin_popcount(all.open[at.k]);
         }
         if (at.finishing) break;
-        if (all.count > 0) found.by_scalar_fallback += all.solve(given, b.step);
+        if (all.count > 0) found.by_scalar_fallback += all.solve(given, b.step, b.scalar);
       }
     }
     base::steps::collect(limits, found);

@@ -17,6 +17,8 @@ enum class tangents { of_plane, given, carried, chosen };
 // level. problems: of a law with a solver, else null.
 using careful_function = void (*)(const void* law, const void* view, std::int64_t first, std::int64_t count,
                                   void* found, void* problems);
+// The scalar fallback for problem k of a law with a solver.
+using scalar_function = void (*)(const void* law, const void* step, void* problems, int k);
 
 // Values that all nodes of a view share.
 struct view_options {
@@ -35,7 +37,9 @@ struct view_options {
   bool has_balance;     // energy or an amount is
   bool has_amounts;     // an amount is
   const table* tables;  // by the law's parameters, over fields that come per node; null: none
+  // Compiled at the baseline alone.
   careful_function careful;
+  scalar_function scalar;
 };
 
 // ---- the arrays of a batch: one list for checks, walks, copies and devices, whose structs name them alike
