@@ -9,21 +9,25 @@ namespace ilaw::coupled {
 
 Progress Iterations::run(Blocks& blocks, Progress progress, bool& stalled) {
   const double scale = progress.scale;
+  const std::uint32_t most = progress.limits.most;
   for (;;) {
     progress.scale = std::max(scale, progress.limits.speed);
-    const std::uint32_t most = progress.limits.most;
     Outcome outcome = conjugate(blocks, progress, most <= few ? most : knobs::first_conjugate);
     const bool away = progress.code >= 0 && runs_away(blocks, progress);
+    if (outcome == Outcome::solved && !away) break;
     if (away && most <= few)
       outcome = begin_again(blocks, progress);
-    else if (away && outcome == Outcome::solved)
+    else if (outcome == Outcome::solved)
       outcome = Outcome::stalled;
     if (outcome == Outcome::spent && most >= least_few && most <= few && !ranks_.any())
       solve_islands(blocks, progress, stalled);
-    if (outcome != Outcome::stalled) break;
-    // A contact that came within reach meanwhile: all of it again, from here.
-    if (solve_islands(blocks, progress, stalled) != Outcome::solved) return progress;
-    if (!ranks_.any_rank(sweep_.wake(blocks))) return progress;
+    if (outcome == Outcome::stalled) solve_islands(blocks, progress, stalled);
+    // Contacts that came within reach meanwhile: all of it again, from here, or an iteration that measures.
+    if (!progress.is_solved() || !ranks_.any_rank(sweep_.wake(blocks))) break;
+    if (!progress.is_over()) continue;
+    if (ranks_.any()) keep_start();
+    iterate(blocks, progress);
+    break;
   }
   stalled = stalled || progress.has_stalled();
   return progress;
