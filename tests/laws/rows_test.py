@@ -37,6 +37,8 @@ import numpy as np
 
 HERE = pathlib.Path(__file__).parent
 VECTORS, SCALARS = ("v_free", "v_before", "normal", "tangent"), ("gap", "area")
+KEYS = {"of", "each", "nodes", "let", "law", "dimension", "form", "parameters", "start", "h", "l", "time", *VECTORS, *SCALARS,
+        "H", "state", "keep", "steps", "until", "always", "expect", "occurs", "order", "finer", "twin", "may_refuse"}
 ENERGIES = ("friction", "impact", "rupture", "stored")
 
 
@@ -185,6 +187,7 @@ class Run:
         lists = {} if isinstance(nodes, int) else {key: value(one, vars(np)) for key, one in nodes.items()}
         grids = np.meshgrid(*map(np.asarray, lists.values()), indexing="ij") if lists else []
         self.row, self.n = row, grids[0].size if grids else nodes if isinstance(nodes, int) else 1
+        self.faults = []
         self.names = names = {
             **vars(np), **ilaw.Status.__members__, "n": self.n, "max": np.maximum, "min": np.minimum,
             "ulp": np.finfo(float).eps, "norm": np.linalg.norm, "bisection": bisection, "runge_kutta": runge_kutta,
@@ -205,8 +208,9 @@ class Run:
             driven = {key: one for key, one in row.items()
                       if key not in ("finer", "always", "expect", "occurs", "order")}
             fine = Run(driven, define, {**given, **row["finer"]}, seed)
+            self.faults += fine.faults
             names["fine"] = types.SimpleNamespace(**fine.nodes.results())
-        self.faults, self.counts, self.error = [], dict.fromkeys(row.get("occurs", {}), 0), None
+        self.counts, self.error = dict.fromkeys(row.get("occurs", {}), 0), None
         self.drive()
 
     def judge(self, part):
@@ -244,6 +248,9 @@ class Run:
                 return
             if "until" in row and np.all(value(row["until"], names)):
                 break
+        else:
+            if "until" in row:
+                self.faults.append(f"{row['until']}: not reached")
         self.judge("expect")
         if "order" in row:
             self.error = float(np.max(value(row["order"]["error"], names)))
@@ -256,6 +263,8 @@ class Run:
 
 def faults_of(row, define, number):
     """What a row finds otherwise, by the values of the run that found it."""
+    if row.keys() - KEYS or not row.keys() & {"always", "expect", "order"}:
+        return [f"keys no row has: {sorted(row.keys() - KEYS)}, and always, expect or order must be there"]
     each = {key: value(one, vars(np)) for key, one in row.get("each", {}).items()}
     runs = [(given, Run(row, define, dict(zip(each, given)), [number, k]))
             for k, given in enumerate(itertools.product(*each.values()))]

@@ -4,7 +4,8 @@
 # it. A row with "each" stands for several, with the values in place of {each}.
 #
 #   files   by name: text, or what is made of a variant of this folder's plug-in: "of", then "bytes" written at places
-#           (numbers, names of the ELF header, or those of the first segment that is loaded), "size" to cut to
+#           (numbers, names of the ELF header, or those of the last segment that is loaded; text is added to the
+#           size), "size" to cut to
 #   set     members of law.json, by JSON pointer, after ilaw-describe wrote it; null removes one
 #   then    files that are written after it
 #   path    ILAW_PATH, "{folder}" if left out; null: not set
@@ -58,9 +59,9 @@ def in_child(path, folder, work):
     return said if code == 0 else f"exit code {code}: {said}"
 
 
-def segment_of(data, is_wanted):
+def last_loaded(data):
     first, count = struct.unpack_from("<Q", data, 32)[0], struct.unpack_from("<H", data, 56)[0]
-    return next(at for at in (first + 56*k for k in range(count)) if is_wanted(struct.unpack_from("<I", data, at)[0]))
+    return [at for at in (first + 56*k for k in range(count)) if struct.unpack_from("<I", data, at)[0] == 1][-1]
 
 
 def made(given):
@@ -68,9 +69,10 @@ def made(given):
     if isinstance(given, str):
         return given.encode("latin-1")
     data = bytearray((PLUGINS / f"{given['of']}.so").read_bytes())
-    load = segment_of(data, lambda kind: kind == 1)
+    load = last_loaded(data)
     for place, value in given.get("bytes", {}).items():
         at, form = HEADER.get(place) or (int(place), "B") if place not in SEGMENT else SEGMENT[place]
+        value = len(data) + int(value) if isinstance(value, str) else value
         struct.pack_into(f"<{form}", data, at + (load if place in SEGMENT else 0), value)
     for old, new in given.get("texts", {}).items():
         data[:] = data.replace(old.encode(), new.encode(), 1)

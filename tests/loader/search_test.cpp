@@ -27,7 +27,6 @@ class Searched : public testing::Test {
   Searched() {
     fs::create_directory(folder / "in");
     fs::copy_file(ILAW_TEST_PLUGINS "/good.so", folder / "in" / "here.so");
-    fs::copy_file(ILAW_TEST_PLUGINS "/good.so", folder / "evil.so");
     setenv("ILAW_PATH", (folder / "in").c_str(), 1);
   }
   ~Searched() override { unsetenv("ILAW_PATH"); }

@@ -369,8 +369,16 @@ def read_mutants(options):
     for number, mutant in enumerate(mutants, 1):
         mutant.update(number=number, area=area_of(mutant["file"]))
         if options.fresh is not None and mutant["area"] == "plugins":
-            mutant["tests"] = [f"{mutant['file'].split('/')[1]}_test"]
+            mutant["tests"] = tests_of_law(mutant["file"].split("/")[1])
     return mutants
+
+
+def tests_of_law(law):
+    if law == "bond":  # a part of two
+        return tests_of_law("cohesive") + tests_of_law("rccm")
+    folder = SOURCE / "tests/laws" / law
+    return (([f"{law}_test"] if any(folder.glob("*_test.cpp")) else [])
+            + ([f"ctest rows.{law}"] if (folder / "rows.json").exists() else []))
 
 
 def by_file(mutants):

@@ -154,15 +154,6 @@ struct NodeRun {
     return NAN;
   }
 
-  // The named amount of the last step.
-  double amount(const std::string& name) const {
-    const ilaw_instance_info info = interface.info();
-    for (std::uint32_t k = 0; k < info.amount_count; ++k)
-      if (info.amounts[k]->name == name) return amounts[k];
-    ADD_FAILURE() << "no amount " << name;
-    return NAN;
-  }
-
   ilaw_batch batch() const {
     ilaw_batch b{};
     b.struct_size = sizeof b;

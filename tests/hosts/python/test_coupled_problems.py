@@ -389,7 +389,6 @@ def test_ruptures_shed_their_load_in_the_same_step(law, stronger):
 class Beads(Problem):
     """Equal points on a line between walls at 0 and 1, thrown at random. pace: their velocities over those of a run with the
     step h, so that a step is h pace."""
-    count = 6
 
     def __init__(self, e, pace, seed):
         super().__init__("impact", friction=0.0, restitution=e)

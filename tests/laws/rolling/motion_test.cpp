@@ -1,5 +1,5 @@
 // A ball on a plane under gravity, in central differences. That it rolls out, spins down and stays on a slope
-// is tested in hosts: tests/hosts/ball_test.cpp.
+// is tested in hosts: tests/hosts/programs_test.py.
 #include "laws/rolling/ball.hpp"
 
 namespace ilaw::testing {
