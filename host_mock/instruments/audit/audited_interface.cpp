@@ -22,7 +22,7 @@ namespace {
 struct Bounds {
   double law, jump, closing;
 };
-constexpr Bounds alone{1e-13, 1e-13, 0.0}, shared{1e-9, 2e-10, 1e-10};
+constexpr Bounds unshared{1e-13, 1e-13, 0.0}, shared{1e-9, 2e-10, 1e-10};
 constexpr double energy_bound = 1e-7;
 constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
 
@@ -203,7 +203,7 @@ void AuditedInterface::check_node(int node_index, const AuditedStep& step) {
   const Call call = call_of(node_index, step);
   const Vector change = call.delassus.cwiseProduct(call.impulse);
   const double speed = std::max({step.speed, call.v_free.norm(), call.v_previous.norm(), change.norm()});
-  const Bounds& bounds = is_coupled_ ? shared : alone;
+  const Bounds& bounds = is_coupled_ ? shared : unshared;
   const double rounded = std::max(rounding * step.farthest, bounds.closing * speed * step.dt);
   const double bound = bounds.law * speed + rounded / step.dt;
   work_scale_ += call.impulse.norm() * (call.v_free.norm() + call.v_previous.norm() + change.norm()) +
@@ -249,7 +249,7 @@ void AuditedInterface::check_gap(const Call& call, int node_index, const Audited
   const bool is_rigid = stops_ && !(law_.info().capabilities & ILAW_CAN_ADHERE);
   if (!is_rigid || call.gap > -rounding * step.farthest) return;
   const Vector v = call.v_free + call.delassus.cwiseProduct(call.impulse);
-  const double bound = (is_coupled_ ? shared : alone).law * std::max(step.speed, call.v_free.norm()) +
+  const double bound = (is_coupled_ ? shared : unshared).law * std::max(step.speed, call.v_free.norm()) +
                        rounding * step.farthest / step.dt + std::max(0.0, call.v_previous.dot(call.normal));
   if (v.dot(call.normal) < -bound)
     fail(node_index, formatted("gap: it is %.3g and closes at %.3g, which a rigid law allows by %.3g alone",

@@ -37,7 +37,7 @@ std::string text_of_parameters(const json& parameters) {
 std::vector<std::string> words_in(const json& entry, const BenchWords& option) {
   if (!entry.contains(option.key)) return {option.words.front()};
   const json& found = entry[option.key];
-  const auto words =
+  auto words =
       found.is_string() ? std::vector{found.get<std::string>()} : found.get<std::vector<std::string>>();
   for (const std::string& word : words)
     if (std::find(option.words.begin(), option.words.end(), word) == option.words.end())
