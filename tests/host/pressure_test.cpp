@@ -87,7 +87,7 @@ TEST(BulkViscosity, LetsABodyTurn) {
     v.segment<3>(k) = spin.cross(turn * x.segment<3>(k));
   }
   Dofs after = v;
-  scene.loads[0]->correct({0.0, 1.0}, {u, v}, after, impulse);
+  scene.loads[0]->correct({0.0, 1.0, 2.0}, {u, v}, after, impulse);
   EXPECT_LT(impulse.cwiseAbs().maxCoeff(), 1e-14);
 }
 

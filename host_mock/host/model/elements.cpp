@@ -121,7 +121,7 @@ std::string advice_on_divergence(const Model& model, const Dofs& u, double dt) {
   }
   const double critical = model.critical_step();
   if (!std::isfinite(critical)) return text + "; a smaller 'dt' may cure it";
-  if (dt > critical)
+  if (dt > 0.99 * critical)
     return text + "; the critical step is " + in_digits(critical, 4) + ", 0.9 of it \"cfl\": 0.9";
   return text + "; half the step is \"cfl\": " + in_digits(0.5 * dt / critical, 4);
 }

@@ -16,8 +16,7 @@ namespace ilaw::host {
 // The step from time t_n to t_{n+1} = t_n + dt. Nodes move with its last velocity until the end of the next
 // one. The half step that a run starts with, from V_0 to V_{1/2}, is {-dt/2, 0, dt}.
 struct StepTimes {
-  double before, after;
-  double until = after + (after - before);
+  double before, after, until;
 
   double duration() const { return after - before; }
 };

@@ -50,7 +50,7 @@ void leave_driven_undamped(const Loads& loads, Eigen::Index d, const Dofs& undam
 
 void Integrator::step() {
   start();
-  const StepTimes times{time(), time_of(steps_ + 1)};
+  const StepTimes times = times_of(steps_ + 1);
   Laps laps(timed_steps());
   has_begun_step_ = true;
   v_before_.swap(v_);       // v is written anew from here on
@@ -69,7 +69,7 @@ void Integrator::step() {
   // r = law(v_free, H, gap, state, T_free), v = v_free + H r
   StepView view{u_, v_before_, times.after, dt_, speed_before_, speed_free, steps_ + 1};
   view.since = times.before;  // to the bit, so that obstacles come at the velocity that the last step saw
-  view.until = time_of(steps_ + 2);
+  view.until = times.until;
   add_reactions(view);
   if (contact_inverse_mass_.size() > 0) add_load_reactions(times);
   laps.add_to(seconds_.interfaces);

@@ -61,6 +61,9 @@ class Integrator {
   std::int64_t steps() const { return steps_; }
   double time() const { return time_of(steps_); }
   double time_of(std::int64_t step) const { return begin_ + static_cast<double>(step) * dt_; }
+  StepTimes times_of(std::int64_t step) const {  // 0: the half step of the start
+    return {step == 0 ? begin_ - 0.5 * dt_ : time_of(step - 1), time_of(step), time_of(step + 1)};
+  }
   const Dofs& displacement() const { return u_; }  // at time()
   const Dofs& velocity() const { return v_; }      // at the half step after time()
   // At the half step before time(), once a step has been made.
@@ -105,7 +108,6 @@ class Integrator {
   void find_contact_mass(StepTimes step);
   void add_load_reactions(StepTimes step);
   Dofs force_at_start() const;
-  StepTimes start_times() const { return {begin_ - 0.5 * dt_, begin_, begin_ + dt_}; }
   void add_start_kick();
   void relax(StepTimes times, bool from_rest);
   void settle(std::int64_t most_steps, const std::function<void(const PrestressReport&)>& told);

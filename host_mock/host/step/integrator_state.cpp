@@ -77,14 +77,14 @@ void Integrator::add_start_kick() {
   Dofs force = force_at_start();
   model_.add_internal_forces(u_, force);
   v_ = model_.initial_velocity() + 0.5 * dt_ * force.cwiseProduct(inverse_mass_);
-  if (!correcting_.empty()) correct(start_times());
+  if (!correcting_.empty()) correct(times_of(0));
 }
 
 // Driven nodes have no velocity before the start but the one that drives them: the start is no impact.
 void Integrator::hold_driven_before() {
   Dofs ignored = Dofs::Zero(u_.size());
   for (const auto& load : loads_)
-    if (!load->prescribed_nodes().empty()) load->correct(start_times(), {u_, v_before_}, v_before_, ignored);
+    if (!load->prescribed_nodes().empty()) load->correct(times_of(0), {u_, v_before_}, v_before_, ignored);
 }
 
 // m (V_{1/2} - V_0) = h/2 f_0 + r_0: laws are asked at time 0, with half a step of the velocity. Bodies then
@@ -98,22 +98,22 @@ void Integrator::start() {
     accounts_.start(model_, u_, u_ + dt_ * v_, v_);
     speed_before_ = largest_speed(v_, model_.dimension());
   }
-  if (temperatures_) temperatures_->conduct(start_times());
+  if (temperatures_) temperatures_->conduct(times_of(0));
   if (interfaces_.empty()) {
     if (temperatures_) take_heat();
     return;
   }
   const Eigen::Index d = model_.dimension();
   const Dofs v_free = v_;
-  find_contact_mass(start_times());
+  find_contact_mass(times_of(0));
   try {
     add_reactions({u_, v_before_, begin_, dt_, largest_speed(v_before_, d), speed_before_, 0});
   } catch (...) {
     v_ = v_free;
     throw;
   }
-  if (contact_inverse_mass_.size() > 0) add_load_reactions(start_times());
-  find_contact_mass({begin_, begin_ + dt_});
+  if (contact_inverse_mass_.size() > 0) add_load_reactions(times_of(0));
+  find_contact_mass(times_of(1));
   if (temperatures_) take_heat();
   speed_before_ = largest_speed(v_, d);
   accounts_.start(model_, u_, u_ + dt_ * v_, v_);
@@ -141,7 +141,7 @@ void Integrator::add_load_impulse(std::size_t load, Dofs& impulse) const {
   Dofs force = Dofs::Zero(u_.size());
   loads_[load]->add_force(time(), u_, force);
   impulse += (steps_ == 0 ? 0.5 * dt_ : dt_) * force;
-  if (steps_ > 0) loads_[load]->add_impulse({time_of(steps_ - 1), time()}, impulse);
+  if (steps_ > 0) loads_[load]->add_impulse(times_of(steps_), impulse);
 }
 
 void Integrator::set_tolerance(double tolerance) {
@@ -163,7 +163,7 @@ void Integrator::load(std::istream& in) {
   read_value(in, has_started_);
   for (Dofs* dofs : {&u_, &v_}) read_array(in, dofs->data(), static_cast<std::size_t>(dofs->size()));
   accounts_.load(in);
-  if (has_started_ && !interfaces_.empty()) find_contact_mass({begin_, begin_ + dt_});
+  if (has_started_ && !interfaces_.empty()) find_contact_mass(times_of(1));
   speed_before_ = largest_speed(v_, model_.dimension());
   for (const auto& interface : interfaces_) interface->load(in, u_);
   if (coupled_) coupled_->load(in, u_);

@@ -52,11 +52,6 @@ void Audit::open() try {
   throw AuditFailure(std::string("audit: prestress: ") + failure.what());
 }
 
-StepTimes Audit::times() const {
-  const double time = integrator_.time();
-  return {time - velocity_step(), time, time + scene_.dt};
-}
-
 std::string Audit::step_text() const {
   return formatted("step %lld, time %g: ", static_cast<long long>(integrator_.steps()), integrator_.time());
 }
@@ -114,7 +109,7 @@ void Audit::check_momentum(const Dofs& contact) const {
   const Model& model = *scene_.model;
   const Dofs &u = integrator_.displacement(), &v = integrator_.velocity(),
              &before = integrator_.velocity_before();
-  const StepTimes times = this->times();
+  const StepTimes times = integrator_.times_of(integrator_.steps());
   Dofs external = Dofs::Zero(u.size()), internal = external, left = contact, ignored = external;
   for (const auto& load : scene_.loads) load->add_force(times.after, u, external);
   external *= velocity_step();

@@ -35,7 +35,6 @@ class Audit {
  private:
   bool is_start() const { return integrator_.steps() == 0; }
   double velocity_step() const { return is_start() ? 0.5 * scene_.dt : scene_.dt; }
-  StepTimes times() const;
   void leave_out_driven(Dofs& of_dofs) const;
   void check_equilibrium() const;
   void check_momentum(const Dofs& impulse) const;

@@ -214,7 +214,7 @@ void AuditedInterface::check_node(int node_index, const AuditedStep& step) {
   if (!(law_.info().capabilities & ILAW_CAN_ADHERE) && change.dot(call.normal) < -bound)
     fail(node_index,
          formatted("cone: the impulse %.3g pulls, and the law cannot adhere", call.impulse.dot(call.normal)));
-  check_gap(call, node_index, step);
+  check_gap(call, node_index, step, bounds.law);
   const double h = bounds.jump * speed + rounded / step.dt;
   for (const auto& [gap, velocity] : {std::pair{0.0, 0.0}, std::pair{-rounded, 0.0}, std::pair{rounded, 0.0},
                                       std::pair{0.0, -h}, std::pair{0.0, h}}) {
@@ -245,11 +245,12 @@ void AuditedInterface::check_beyond_border(int node_index) const {
 
 // Once the gap is closed a rigid law lets nothing further in, but as fast as it came out in the step before:
 // then its impulse would do work on the way out.
-void AuditedInterface::check_gap(const Call& call, int node_index, const AuditedStep& step) const {
+void AuditedInterface::check_gap(const Call& call, int node_index, const AuditedStep& step,
+                                 double of_speed) const {
   const bool is_rigid = stops_ && !(law_.info().capabilities & ILAW_CAN_ADHERE);
   if (!is_rigid || call.gap > -rounding * step.farthest) return;
   const Vector v = call.v_free + call.delassus.cwiseProduct(call.impulse);
-  const double bound = (is_coupled_ ? shared : unshared).law * std::max(step.speed, call.v_free.norm()) +
+  const double bound = of_speed * std::max(step.speed, call.v_free.norm()) +
                        rounding * step.farthest / step.dt + std::max(0.0, call.v_previous.dot(call.normal));
   if (v.dot(call.normal) < -bound)
     fail(node_index, formatted("gap: it is %.3g and closes at %.3g, which a rigid law allows by %.3g alone",
