@@ -246,7 +246,7 @@ WRONG(mutable_initialise)
   void initialise(Node&) {}
 };
 
-// stable_velocity_step must be V stable_velocity_step(V h_n, V h_t) const, or template <class Node> V stable_velocity_step(const Node& node) const
+// stable_velocity_step must be template <class Node> V stable_velocity_step(const Node& node) const
 WRONG(stable_step_of_nothing)
   STEP
   V stable_velocity_step() const { return a; }

@@ -236,9 +236,8 @@ constexpr bool passes_node() {
   ILAW_KIT_CHECK("step and ask take the same nodes: bool asks() const says which parameters need ask",
                  !(steps && asks) || names_asks<Law>)
   ILAW_KIT_CHECK(
-      "stable_velocity_step must be V stable_velocity_step(V h_n, V h_t) const, or template <class Node> V "
-      "stable_velocity_step(const Node& node) const",
-      !names_stable_velocity_step<Law> || is_limited_by_delassus<Law> ||
+      "stable_velocity_step must be template <class Node> V stable_velocity_step(const Node& node) const",
+      !names_stable_velocity_step<Law> ||
           requires(const Wide& law, const Node& node) { law.stable_velocity_step(node); })
   return passes;
 }
