@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/device/arguments.hpp>
+#include <ilaw/device/arguments.hpp>
 #include <ilaw/kit/node.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {

@@ -4,7 +4,7 @@
 
 #include <ilaw/ext/draft/device.h>
 #include <ilaw/kit/detail/evaluate.hpp>
-#include <ilaw/kit/device/arguments.hpp>
+#include <ilaw/device/arguments.hpp>
 
 // The images that ilaw_add_plugin links into the library.
 extern "C" {
