@@ -76,7 +76,7 @@ WRONG(state_with_double)
                                                               {.member = &state::count, .name = "count"}};
 };
 
-// a member of struct state is a V, a vector<V> or a tangential_vector<V>
+// the members of struct state must be V, vector<V> or tangential_vector<V>
 WRONG(described_int)
   STEP
   struct state {

@@ -345,11 +345,6 @@ class state_member {
         kind_(component == &vector<double>::n ? ILAW_KIND_SCALAR : ILAW_KIND_HISTORY) {}
   constexpr state_member(tangential_vector<double> State::*member)
       : tangential_(member), kind_(ILAW_KIND_TANGENTIAL) {}
-  template <class Other>
-  constexpr state_member(Other State::*) {
-    static_assert(std::is_same_v<Other, double>,
-                  "a member of struct state is a V, a vector<V> or a tangential_vector<V>");
-  }
 
   constexpr bool is_given() const { return scalar_ || vector_ || tangential_; }
   constexpr std::uint32_t kind() const { return kind_; }
