@@ -3,8 +3,8 @@
 #pragma once
 
 #include <ilaw/ext/draft/device.h>
-#include <ilaw/kit/detail/evaluate.hpp>
 #include <ilaw/device/arguments.hpp>
+#include <ilaw/kit/detail/evaluate.hpp>
 
 // The images that ilaw_add_plugin links into the library.
 extern "C" {
