@@ -39,6 +39,20 @@ Eigen::AlignedBox3d bounds_of(const FacetShape& corners) {
   return box;
 }
 
+// How far a facet lies from the points of its box, at most: boxes in other axes are that much farther apart.
+double room_in_box(const FacetShape& corners) {
+  const Eigen::AlignedBox3d box = bounds_of(corners);
+  double most = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d at = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < corners.count; ++k)
+      least = std::min(least, (at - corners.at[k]).squaredNorm());
+    most = std::max(most, least);
+  }
+  return std::sqrt(most);
+}
+
 }  // namespace
 
 MortarSurface::MortarSurface(const Model& model, const NodeSet& own, const NodeSet& surface)
@@ -117,13 +131,18 @@ void MortarSurface::follow(const Dofs& u) {
   refresh();
 }
 
+// With boxes of its own axes the search finds all pairs whose boxes are within the horizon in these axes.
 void MortarSurface::find_candidates() {
+  double own = 0.0, main = 0.0;
+  for (const Patch& patch : patches_) own = std::max(own, room_in_box(corners_of(patch)));
+  for (std::size_t k = 0; k < facets().size(); ++k)
+    main = std::max(main, room_in_box(corners_of(static_cast<std::int32_t>(k))));
   ilaw_facets_overlaps_of asked{};
   asked.struct_size = sizeof asked;
   asked.corner_count = 4;
   asked.count = static_cast<std::int64_t>(patches_.size());
   asked.points = face_points_.data();
-  asked.distance = horizon_;
+  asked.distance = horizon_ + own + main;
   asked.first = first_.data();
   do {
     found_.resize(std::max(found_.size(), static_cast<std::size_t>(first_.back())));
