@@ -50,14 +50,14 @@ double MadeProblem::size_of(const Matrix& h, const Wrench& impulse) const {
 // closes; those that a rounding closes are closed (coupled.h, tolerance).
 double MadeProblem::least_error(const Contact& contact, const Matrix& h, const Wrench& v_free,
                                 const Wrench& r) const {
-  constexpr double known = 1e-10, small = 1e-9, rounding = 1e-14;
+  constexpr double known = 1e-10, small = 1e-9, rounded = 1e-14;
   const auto error_at = [&](const Wrench& v) { return size_of(h, answer(contact, v) - r); };
   double least = error_at(v_free);
   if (contact.gap > 0.0 && contact.gap <= known * scale() * setup_.step) {
     Contact closed = contact;
     closed.gap = 0.0;
     const double of_closed = least_error(closed, h, v_free, r);
-    if (contact.gap <= rounding * scale() * setup_.step) return of_closed;
+    if (contact.gap <= rounded * scale() * setup_.step) return of_closed;
     least = std::min(least, of_closed);
   }
   for (std::size_t k = 0; k < 4 && least > small * scale(); ++k) {
