@@ -160,7 +160,7 @@ TEST_P(MadeOf, IsSolvedInTheScaleOfItsInput) {
     }
     ASSERT_LE(made.momentum, 1e-12) << k;
     ilaw_coupled_options options{};
-    options.tolerance = k % 2 ? 1e-6 : 1e-10;
+    options.tolerance = k % 3 != 1 && k % 2 ? 1e-6 : 1e-10;  // which closes no gap of 1e-6
     const double most = 10.0 * options.tolerance;
     const ilaw_coupled_report report = problem.solve(solver, options);
     const MadeAudit found = problem.audit(report);
