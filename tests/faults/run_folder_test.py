@@ -376,8 +376,8 @@ class RunFolder(unittest.TestCase):
         if SEED != FIXED_SEED:
             return
         for event in ("run kill: -9", "resume kill: -9", "run full: 1", "run fail: 1", "run int: 1", "run term: 1",
-                      "run hup: 1", "run fail malloc: 1", "run fail worker: 1", "run int malloc: 1", "run stop: 1", "run stop: 0", "resume undisturbed: 0", "resume undisturbed: 2",
-                      "damage: turn"):
+                      "run hup: 1", "run fail malloc: 1", "run fail worker: 1", "run int malloc: 1",
+                      "run stop: 1", "run stop: 0", "resume undisturbed: 0", "resume undisturbed: 2", "damage: turn"):
             self.assertGreater(seen[event], 0, event)
 
     def test_shortens_a_sequence_that_fails(self):

@@ -100,7 +100,8 @@ class NoNumbers:
 
 # By a word of the reason. The last three are of bodies and groups, the others of a solve.
 REFUSALS = {"tolerance": {"tolerance": np.nan}, "rounding": {"rounding": np.inf}, "speed": {"speed": -1.0},
-            "exchange": {"exchange": NoNumbers()}, "inverse_mass": {"inverse_mass": np.nan}, "twice": {"twice": True}, "overlaps itself": {"overlaps": True}}
+            "exchange": {"exchange": NoNumbers()}, "inverse_mass": {"inverse_mass": np.nan}, "twice": {"twice": True},
+            "overlaps itself": {"overlaps": True}}
 OUTPUTS = ["impulse", "moment", "state_out", "energy"]
 
 
@@ -490,7 +491,8 @@ class Tired:
 
 
 def place_of(array, node, component):
-    return ctypes.cast(array.values, ctypes.POINTER(ctypes.c_double)), node * array.node_stride + component * array.component_stride
+    number = node * array.node_stride + component * array.component_stride
+    return ctypes.cast(array.values, ctypes.POINTER(ctypes.c_double)), number
 
 
 def at(array, node, component):
