@@ -9,7 +9,7 @@ set(ILAW_KERNELS OFF CACHE STRING "Kernels for GPUs: ON for all laws that ask fo
 macro(ilaw_set_kernel_flags)
   set(ILAW_KERNEL_FLAGS -std=c++20 -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-exceptions -fno-rtti
       -fno-threadsafe-statics -DILAW_KIT_DEVICE -DILAW_KIT_LEVEL=device
-      -include ilaw/kit/device/prelude.hpp -Wno-bitwise-instead-of-logical -Wno-c++11-narrowing
+      -include ilaw/device/prelude.hpp -Wno-bitwise-instead-of-logical -Wno-c++11-narrowing
       -Wno-unknown-cuda-version)
   set(ILAW_KERNEL_FLAGS_PTX -x cuda --cuda-device-only -nocudainc -nocudalib --cuda-gpu-arch=sm_70 -Xclang
       -target-feature -Xclang +ptx63 -mllvm -inline-threshold=1000 -S)
@@ -43,7 +43,8 @@ endfunction()
 # <prefix>_ptx_end, and the same of spirv.
 function(ilaw_add_kernel_images target name source prefix)
   ilaw_set_kernel_flags()
-  set(includes -I$<JOIN:$<TARGET_PROPERTY:ilaw::abi,INTERFACE_INCLUDE_DIRECTORIES>,$<SEMICOLON>-I>)
+  target_link_libraries(${target} PRIVATE ilaw::device_kit)
+  set(includes -I$<JOIN:$<TARGET_PROPERTY:ilaw::device_kit,INTERFACE_INCLUDE_DIRECTORIES>,$<SEMICOLON>-I>)
   set(text)
   set(images)
   foreach(kind IN LISTS ILAW_KERNEL_KINDS)

@@ -246,6 +246,8 @@ Outcome Iterations::take_turns(Blocks& blocks, Progress& progress, Best& best) {
       read_impulses(blocks, best.far_ones);
     return false;
   };
+  if (knobs::newton_first && settles(newton(blocks, progress))) return Outcome::solved;
+  if (knobs::newton_first) keep_best(blocks, progress, best);
   for (std::uint32_t turn = 0, futile = 0; !progress.is_over() && futile < most_futile; ++turn) {
     const double error_before = best.error;
     for (double before = Progress::infinity; !progress.is_over();) {

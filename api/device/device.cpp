@@ -111,7 +111,7 @@ class Launcher {
         most_nodes_(most_nodes),
         argument_(law_.argument_size),
         reasons_(driver, most_nodes),
-        limits_(driver, 3 * most_nodes),
+        stable_steps_(driver, most_nodes),
         findings_(driver, finding_lanes),
         sums_(driver, sum_lanes * sum_components),
         last_sums_(driver, last_sum_lanes * sum_components) {
@@ -123,7 +123,7 @@ class Launcher {
   }
 
   ilaw_result evaluate(void* queue, const ilaw_batch* batch, bool wants_report, ilaw_report* report) {
-    const ilaw_device_findings asked{sizeof(ilaw_device_findings), 0, reasons_.get(), limits_.get()};
+    const ilaw_device_findings asked{sizeof(ilaw_device_findings), 0, reasons_.get(), stable_steps_.get()};
     const ilaw_result code =
         law_.argument(&instance_, batch, wants_report ? &asked : nullptr, argument_.data(), report);
     if (code != ILAW_OK) return code;
@@ -133,13 +133,13 @@ class Launcher {
     has_report_ = wants_report;
     if (batch_.node_count == 0) return ILAW_OK;
     std::vector<void*> pointers = pointers_of(batch_);
-    if (wants_report) pointers.insert(pointers.end(), {reasons_.get(), limits_.get()});
+    if (wants_report) pointers.insert(pointers.end(), {reasons_.get(), stable_steps_.get()});
     kernel_->launch(queue_or_own(queue), batch_.node_count, argument_.data(), argument_.size(), pointers);
     if (wants_report) {
-      FindingArgument totals{batch_.node_count, reasons_.get(), limits_.get(), findings_.get()};
+      FindingArgument totals{batch_.node_count, reasons_.get(), stable_steps_.get(), findings_.get()};
       own_kernel(finder_, "ilaw_total_findings")
           .launch(queue_or_own(queue), finding_lanes, &totals, sizeof totals,
-                  {reasons_.get(), limits_.get(), findings_.get()});
+                  {reasons_.get(), stable_steps_.get(), findings_.get()});
     }
     return ILAW_OK;
   }
@@ -149,8 +149,7 @@ class Launcher {
     ilaw_device_totals totals{};
     totals.struct_size = sizeof totals;
     totals.first_bad_node = -1;
-    totals.limits[0] = std::numeric_limits<double>::infinity();
-    totals.time = batch_.time;
+    totals.stable_step = std::numeric_limits<double>::infinity();
     if (batch_.node_count > 0) join(findings_.read(queue_or_own(queue), finding_lanes), totals);
     if (totals.bad_count > 0) {
       std::uint8_t reason = 0;
@@ -196,9 +195,7 @@ class Launcher {
       totals.bad_count += part.bad_count;
       if (part.first_bad >= 0 && (totals.first_bad_node < 0 || part.first_bad < totals.first_bad_node))
         totals.first_bad_node = part.first_bad;
-      totals.limits[0] = std::min(totals.limits[0], part.limits[0]);
-      totals.limits[1] = std::max(totals.limits[1], part.limits[1]);
-      totals.limits[2] = std::max(totals.limits[2], part.limits[2]);
+      totals.stable_step = std::min(totals.stable_step, part.stable_step);
     }
   }
   std::int64_t node_at(void* queue, std::int64_t position) const {
@@ -242,7 +239,7 @@ class Launcher {
   const std::int64_t most_nodes_;
   std::vector<unsigned char> argument_;
   Array<std::uint8_t> reasons_;
-  Array<double> limits_;
+  Array<double> stable_steps_;
   Array<FindingParts> findings_;
   Array<double> sums_, last_sums_;
   std::unique_ptr<Kernel> kernel_, finder_, summer_;

@@ -7,16 +7,13 @@ using namespace ilaw::device;
 extern "C" __attribute__((global)) void ilaw_total_findings(FindingArgument a) {
   const std::int64_t lane = ilaw::kit::detail::thread_number();
   if (lane >= finding_lanes) return;
-  FindingParts found{0, -1, {__builtin_inf(), 0.0, 0.0}};
+  FindingParts found{0, -1, __builtin_inf()};
   for (std::int64_t k = lane; k < a.count; k += finding_lanes) {
     if (a.reasons[k] != 0) {
       if (found.bad_count++ == 0) found.first_bad = k;
       continue;
     }
-    const double* const limits = a.limits + 3 * k;
-    if (limits[0] < found.limits[0]) found.limits[0] = limits[0];
-    if (limits[1] > found.limits[1]) found.limits[1] = limits[1];
-    if (limits[2] > found.limits[2]) found.limits[2] = limits[2];
+    if (a.stable_steps[k] < found.stable_step) found.stable_step = a.stable_steps[k];
   }
   a.parts[lane] = found;
 }

@@ -13,12 +13,12 @@ inline constexpr int sum_components = 4;
 
 struct FindingParts {
   std::int64_t bad_count, first_bad;  // a position in the batch; -1: none
-  double limits[3];
+  double stable_step;
 };
 struct FindingArgument {
   std::int64_t count;
   const std::uint8_t* reasons;
-  const double* limits;
+  const double* stable_steps;
   FindingParts* parts;  // finding_lanes
 };
 

@@ -99,7 +99,7 @@ class Run {
       record.interrupted = integrator_.steps() < scene_.steps;
       check_results();
       // Also at the end, to go on to a later one.
-      if (options_.checkpoint_every > 0 && checkpoint_step_ != integrator_.steps()) write_checkpoint_now();
+      if (options_.checkpoint_every > 0 && !has_checkpoint()) write_checkpoint_now();
       history_.commit();
       if (events_) events_->commit();
     } catch (const Interrupted&) {
@@ -130,6 +130,7 @@ class Run {
   }
 
   const Integrator& integrator() const { return integrator_; }
+  bool has_checkpoint() const { return checkpoint_step_ == integrator_.steps(); }
   RunRecord record;
   nlohmann::json judged = nlohmann::json::array();  // expectations, of a whole run
 
@@ -363,7 +364,7 @@ int report_run(const Scene& scene, const Run& run, const RunOptions& options) {
   if (record.interrupted) {
     complain(file + ": interrupted at step " + steps + " of " + std::to_string(scene.steps) +
              "; the files in " + folder.string() + " are whole up to there" +
-             (options.checkpoint_every > 0 ? ", and --resume goes on from there" : ""));
+             (run.has_checkpoint() ? ", and --resume goes on from there" : ""));
     return exit_failed;
   }
   std::printf(

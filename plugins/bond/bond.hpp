@@ -11,7 +11,7 @@
 //   broken                             its memory when nothing is left: 1 of damage, 0 of adhesion
 //   friction                           a parameter: the coefficient without bond
 //   prepare(step_sizes)                a bond_common, or what derives from it: "all" below
-//   friction_of(memory)                the coefficient beside what is left of the bond
+//   broken_part(memory, all)           of the area, on which friction acts: 0 of an intact bond
 //   energy(memory, size, all)          stored per area; size^2 = w.W w
 //   as_it_was(step, memory, all, found)   the motion with the memory before, and where it holds
 //   change(step, where, all, found)    motion and memory where it does not
@@ -111,8 +111,14 @@ struct adhesive_bond {
 
   // The coefficient of friction with the mean memory of the step, as the bond has its mean traction: second
   // order. An infinite one would jump as the memory first changes, and is that before the step.
-  ILAW_KIT_INLINE V mean_friction(V before, V after) const {
-    return law().friction_of(select(law().friction < infinity, 0.5 * (before + after), before));
+  template <class Common>
+  ILAW_KIT_INLINE V mean_friction(V before, V after, const Common& common) const {
+    return friction_of(select(law().friction < infinity, 0.5 * (before + after), before), common);
+  }
+  template <class Common>
+  ILAW_KIT_INLINE V friction_of(V memory, const Common& common) const {
+    const V part = law().broken_part(memory, common);
+    return zero_unless(part > 0.0, law().friction * part);
   }
 
  private:
@@ -290,8 +296,8 @@ struct adhesive_bond {
       node.tangential_gain = zero_unless(where, e.tangential_gain);
       node.stored = zero_unless(where, e.stored);
       node.rupture = zero_unless(where, e.rupture);
-      const V broken_part = absolute((1.0 - Law<V>::broken) - 0.5 * (before.memory + a.state.memory));
-      node.rubbing = select(where, broken_part, node.rubbing);
+      const V part = law().broken_part(0.5 * (before.memory + a.state.memory), node.prepared);
+      node.rubbing = select(where, part, node.rubbing);
     }
     node.impulse = select(where, a.impulse, node.impulse);
     node.state.memory = select(where, a.state.memory, node.state.memory);

@@ -12,7 +12,8 @@ using namespace bond_law;
 using namespace cohesive_law;
 
 constexpr const char* shape_choices[] = {"bilinear", "exponential", "camacho_ortiz"};
-constexpr double exponential = 1.0, camacho_ortiz = 2.0;
+constexpr const char* friction_weight_choices[] = {"damage", "stiffness"};
+constexpr double exponential = 1.0, camacho_ortiz = 2.0, by_stiffness = 1.0;
 
 // kappa of a rigid bond that is to break: it leaves 2^-100 of the free motion.
 constexpr double most_rigid = 0x1p100;
@@ -30,6 +31,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
   V mixing_exponent;
   V stiffness;
   V friction;
+  double friction_weight;
   V delay_time;
   V delay_exponent;
   V heat_partition;
@@ -101,6 +103,11 @@ struct cohesive : adhesive_bond<cohesive, V> {
        .minimum_excluded = true,
        .infinity_allowed = true},
       friction_parameter(&cohesive::friction).with_doc("Coefficient of friction of what is broken."),
+      {.member = &cohesive::friction_weight,
+       .name = "friction_weight",
+       .doc = "Which part of the area is broken: the damage, or the lost part of the stiffness (Alfano and "
+              "Sacco 2006).",
+       .choices = friction_weight_choices},
       {.member = &cohesive::delay_time,
        .name = "delay_time",
        .symbol = "tau_c",
@@ -129,6 +136,9 @@ struct cohesive : adhesive_bond<cohesive, V> {
     if (shape == camacho_ortiz && shear_toughness() != toughness)
       return "shape \"camacho_ortiz\" has one toughness: parameter 'toughness_2' must be the same as "
              "'toughness'";
+    if (friction_weight == by_stiffness && stiffness == infinity)
+      return "friction_weight \"stiffness\" needs a finite 'stiffness': a rigid bond has lost all of it at any "
+             "damage";
     if (delay_time > 0.0 && stiffness == infinity)
       return "parameter 'delay_time' > 0 needs a finite 'stiffness': the opening of a rigid bond says "
              "nothing of its load";
@@ -173,7 +183,11 @@ struct cohesive : adhesive_bond<cohesive, V> {
   // ---- the bond, for the kit (bond.hpp)
 
   mask_of<V> bonds() const { return (strength > 0.0) & (toughness > 0.0); }
-  V friction_of(V damage) const { return zero_unless(damage > 0.0, friction * damage); }
+  // d, or 1 - k/K = d (1/K + b)/(1/K + d b).
+  V broken_part(V damage, const common& all) const {
+    if (friction_weight != by_stiffness) return damage;
+    return damage * ((all.flexibility + all.softness) / secant_of(damage, all).soft);
+  }
   static V energy(V damage, V size, const common& all) {
     const secant<V> s = secant_of(damage, all);
     return select(s.soft > 0.0, 0.5 * s.stiff / s.soft * size * size, 0.0);
@@ -199,7 +213,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
     const secant<V> now = secant_of(damage, all);
     const mask_of<V> is_soft = now.soft > 0.0;
     const V kappa = zero_unless(is_soft, step.compliance * now.stiffness());
-    step.move(found.motion, kappa, friction_of(damage));
+    step.move(found.motion, kappa, this->friction_of(damage, all));
     const mask_of<V> stays = (strength == infinity) | is_below(damage, now, found.motion, all);
     found.holds = is_soft & step.has_scale(kappa) & stays;
   }
@@ -216,10 +230,10 @@ struct cohesive : adhesive_bond<cohesive, V> {
       if (!any(where)) return;
     }
     const curve_before before(found.memory, all);
-    V coefficient = friction_of(before.damage);
+    V coefficient = this->friction_of(before.damage, all);
     bool is_tried = true;
     root_between(before.damage, V(1.0), before.damage, where, [&](V damage) ILAW_KIT_LAMBDA {
-      coefficient = select(where, this->mean_friction(before.damage, damage), coefficient);
+      coefficient = select(where, this->mean_friction(before.damage, damage, all), coefficient);
       soften(step, where, all, before, coefficient, is_tried, found);
       is_tried = false;
       const mask_of<V> grows = (found.memory > before.damage) | (damage > before.damage);

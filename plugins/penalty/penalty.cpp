@@ -105,19 +105,20 @@ struct penalty {
 
   // The limit of explicit springs, the normal one closed and as stiff as it is now, with a damper that lags:
   // omega h = 2 (sqrt(1 + zeta^2) - zeta), zeta = c H/(2 omega) (Belytschko, Liu, Moran 2000, eq. 6.2.31).
-  V limit_with(V h_n, V h_t, V slope) const {
-    if (integration == implicitly) return infinity;
-    const V half_damper = 0.5 * damping * h_n;
-    const V closed = 2.0 / (length(square_root(slope * h_n), half_damper) + half_damper);
-    return smaller(2.0 / square_root(zero_unless(friction > 0.0, tangential_stiffness) * h_t), closed);
-  }
-  V stable_velocity_step(V h_n, V h_t) const {
-    return select(exponent == 1.0, limit_with(h_n, h_t, stiffness), V(not_a_number));
-  }
   template <class Node>
   V stable_velocity_step(const Node& node) const {
-    const V slope = exponent * stiffness * to_exponent(positive_part(-node.gap), exponent - 1.0);
-    return limit_with(node.delassus.normal(), node.delassus.largest_tangential(), slope);
+    if (integration == implicitly) return infinity;
+    const V h_n = node.delassus.normal(), h_t = node.delassus.largest_tangential();
+    V slope = stiffness;
+    if (const auto is_linear = exponent == 1.0; any(!is_linear))
+      slope =
+          select(is_linear, slope, exponent * slope * to_exponent(positive_part(-node.gap), exponent - 1.0));
+    V omega = square_root(larger(slope * h_n, zero_unless(friction > 0.0, tangential_stiffness) * h_t));
+    if (any(damping > 0.0)) {
+      const V half_damper = 0.5 * damping * h_n;
+      omega = larger(omega, square_root(slope * h_n + half_damper * half_damper) + half_damper);
+    }
+    return 2.0 / omega;
   }
 
   // Values that all nodes of a batch share.

@@ -83,14 +83,14 @@ struct rccm : adhesive_bond<rccm, V> {
   using common = bond_common<V>;
   common prepare(const step_sizes& step) const { return {step, tangential_stiffness / normal_stiffness}; }
 
-  V friction_of(V beta) const { return zero_unless(beta < 1.0, friction * (1.0 - beta)); }
+  static V broken_part(V beta, const common&) { return 1.0 - beta; }
   V energy(V beta, V y, const common&) const { return 0.5 * normal_stiffness * (beta * y) * (beta * y); }
 
   // Adhesion stays where its energy is not above w.
   template <class Step>
-  void as_it_was(const Step& step, V beta, const common& /*all*/, bond_result<Step>& found) const {
+  void as_it_was(const Step& step, V beta, const common& all, bond_result<Step>& found) const {
     const V kappa = mean_kappa(step, beta, beta);
-    step.move(found.motion, kappa, friction_of(beta));
+    step.move(found.motion, kappa, this->friction_of(beta, all));
     found.holds = step.has_scale(kappa) & (beta * mean_square(step, found.motion) <= adhesion_energy);
   }
 
@@ -101,7 +101,7 @@ struct rccm : adhesive_bond<rccm, V> {
     const V before = found.memory, rate = viscosity / all.step.velocity_step,
             most = mean_kappa(step, before, before);
     const auto trial = [&](V beta) ILAW_KIT_LAMBDA {
-      step.move(found.motion, mean_kappa(step, before, beta), this->mean_friction(before, beta));
+      step.move(found.motion, mean_kappa(step, before, beta), this->mean_friction(before, beta, all));
       found.left = found.left | (where & found.motion.unsolved);
       const V q = mean_square(step, found.motion), size = 0.5 * q + rate, sum = before + beta;
       const V softer = 0.5 * sum * normal_stiffness * step.compliance * normal_stiffness * beta;

@@ -100,8 +100,8 @@ class Here : public Target {
   ilaw_result step(const ilaw_batch& moved, ilaw_report& found) override {
     const auto n = static_cast<std::size_t>(moved.node_count);
     std::vector<std::uint8_t> reasons(n);
-    std::vector<double> limits(3 * n);
-    const ilaw_device_findings findings{sizeof findings, 0, reasons.data(), limits.data()};
+    std::vector<double> stable_steps(n);
+    const ilaw_device_findings findings{sizeof findings, 0, reasons.data(), stable_steps.data()};
     std::vector<unsigned char> argument(device_.argument_size);
     const ilaw_result code = device_.argument(instance_, &moved, &findings, argument.data(), &found);
     if (code != ILAW_OK) return code;
@@ -109,7 +109,7 @@ class Here : public Target {
       *thread_ = k;
       kernel_(argument.data());
     }
-    ilaw_device_totals totals{sizeof totals, 0, 0, -1, {INFINITY, 0.0, 0.0}, moved.time};
+    ilaw_device_totals totals{sizeof totals, 0, 0, -1, INFINITY};
     for (std::size_t k = 0; k < n; ++k) {
       if (reasons[k] != 0 && totals.bad_count++ == 0) {
         totals.first_bad_node =
@@ -117,9 +117,7 @@ class Here : public Target {
         totals.reason = reasons[k];
       }
       if (reasons[k] != 0) continue;
-      totals.limits[0] = std::min(totals.limits[0], limits[3 * k]);
-      totals.limits[1] = std::max(totals.limits[1], limits[3 * k + 1]);
-      totals.limits[2] = std::max(totals.limits[2], limits[3 * k + 2]);
+      totals.stable_step = std::min(totals.stable_step, stable_steps[k]);
     }
     return device_.report(instance_, &totals, &found);
   }

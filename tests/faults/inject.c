@@ -1,7 +1,8 @@
 /* Preloaded: the n-th of some calls that a program makes in one folder fails, is cut short, or is where it
- * gets a signal. ILAW_INJECT="folder:call:n:how"; call: open, write, fsync, rename or any; how: fail, full
- * (no room from here on), kill, or int, term, hup and stop, after which the call goes on. ILAW_INJECT_COUNT
- * names a file that gets the number of such calls. */
+ * gets a signal. ILAW_INJECT="folder:call:n:how"; call: open, write, fsync, rename or any of these, malloc
+ * once a file of the folder is open, or worker, which is malloc in other threads than the first; how: fail,
+ * full (no room from here on), kill, or int, term, hup and stop, after which the call goes on.
+ * ILAW_INJECT_COUNT names a file that gets the number of such calls. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -18,7 +19,7 @@
 enum { most_descriptors = 1024 };
 static char folder[PATH_MAX], call[16], how[16];
 static long chosen, seen;
-static int is_full;
+static int is_full, has_begun;
 static unsigned char is_ours[most_descriptors];
 
 __attribute__((constructor)) static void start(void) {
@@ -57,8 +58,8 @@ static int signal_of(const char* name) {
 /* Whether this call is the one that fails; does not come back where it is to be killed before a call that
  * does nothing by halves. */
 static int is_chosen(const char* name) {
-  if (strcmp(call, name) != 0 && strcmp(call, "any") != 0) return 0;
-  if (++seen != chosen) return 0;
+  if (strcmp(call, name) != 0 && (strcmp(call, "any") != 0 || strcmp(name, "malloc") == 0)) return 0;
+  if (__atomic_add_fetch(&seen, 1, __ATOMIC_RELAXED) != chosen) return 0;
   if (strcmp(how, "full") == 0) is_full = 1;
   if (strcmp(how, "kill") == 0 && strcmp(name, "write") != 0) send(SIGKILL);
   const int signal = signal_of(how);
@@ -72,6 +73,7 @@ static int opened(const char* path, int flags, mode_t mode) {
     errno = ENOSPC;
     return -1;
   }
+  if (matters) has_begun = 1;
   const int descriptor = (int)syscall(SYS_openat, AT_FDCWD, path, flags, mode);
   if (descriptor >= 0 && descriptor < most_descriptors) is_ours[descriptor] = (unsigned char)matters;
   return descriptor;
@@ -124,4 +126,15 @@ int rename(const char* from, const char* to) {
     return -1;
   }
   return (int)syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0);
+}
+
+extern void* __libc_malloc(size_t size);
+void* malloc(size_t size) {
+  const int is_shared = strcmp(call, "worker") == 0;
+  if (is_shared ? syscall(SYS_gettid) != syscall(SYS_getpid) && is_chosen(call)
+                : has_begun && is_chosen("malloc")) {
+    errno = ENOMEM;
+    return NULL;
+  }
+  return __libc_malloc(size);
 }

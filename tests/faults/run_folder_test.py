@@ -25,9 +25,11 @@ from state_machine import Broken, demand, search, shrunk  # noqa: E402
 FIXED_SEED = 57
 SEED = int(os.environ.get("ILAW_RUN_FOLDER_SEED", FIXED_SEED))
 SEQUENCES = int(os.environ.get("ILAW_RUN_FOLDER_SEQUENCES", "60"))
-ENDS = {"ball": 0.21, "longer_ball": 0.35, "bars": 1.01, "plain": 0.21}
+ENDS = {"ball": 0.21, "longer_ball": 0.35, "bars": 1.01, "plain": 0.21, "pressed": 0.5, "mesh": 0.05}
+WITHOUT_FIELDS = ["plain", "pressed", "mesh"]  # VTK itself crashes without memory
 SIGNALS = ["int", "term", "hup"]
-CALLS = ["any", "write", "open", "fsync", "rename"]
+CALLS = ["any", "write", "open", "fsync", "rename", "malloc", "worker"]
+MOST_AFTER = 8000  # allocations after a signal: a step, and the files of an end
 MEMORY = pathlib.Path("/dev/shm")  # fsync takes most of the time elsewhere
 
 
@@ -75,13 +77,25 @@ def is_whole_checkpoint(data):
     return at + length == len(data) and zlib.crc32(data[at:]) == checksum
 
 
+def column_of_hexahedra(count):
+    """A file of VTK. The last element, which sets the critical step, is looked at by the last thread."""
+    def array(kind, values, more=""):
+        return f'<DataArray type="{kind}" {more} format="ascii">{" ".join(map(str, values))}</DataArray>'
+    points = [number for k in range(count + 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)) for number in (x, y, 1 - 0.995**k)]
+    cells = (array("Int64", [4 * k + c for k in range(count) for c in range(8)], 'Name="connectivity"')
+             + array("Int64", range(8, 8 * count + 1, 8), 'Name="offsets"') + array("UInt8", [12] * count, 'Name="types"'))
+    return (f'<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="{4 * count + 4}" '
+            f'NumberOfCells="{count}"><Points>' + array("Float64", points, 'NumberOfComponents="3"')
+            + f"</Points><Cells>{cells}</Cells></Piece></UnstructuredGrid></VTKFile>")
+
+
 class World:
     """Scenes, and what an undisturbed run of each leaves."""
 
     def __init__(self, home):
         self.home, self.files, self.calls = home, {}, {}
         for name, end in ENDS.items():
-            scene = json.loads((SOURCE / ("host_mock/scenes/two_bars.json" if name == "bars" else
+            scene = json.loads((SOURCE / ("host_mock/scenes/two_bars.json" if name in ("bars", "pressed") else
                                           "plugins/contact/bouncing_ball.json")).read_text())
             scene.pop("expect", None)  # of its own end
             scene["time"]["end"] = end
@@ -89,9 +103,23 @@ class World:
             if name == "plain":  # another cause, and fewer files
                 scene["loads"][0]["acceleration"] = [-9.0]
                 scene["output"] = {"every": 1}
+            if name == "pressed":  # far longer than the run
+                scene["springs"] = [{"nodes": f"{side}.{side}", "stiffness": 1.0, "anchor": [at]}
+                                    for side, at in (("left", -1.0), ("right", 2.0))]
+                scene["model"]["bars"][0].update({"start": -1.0, "velocity": 0.0})
+                scene.update({"loads": [{"type": "gravity", "acceleration": [-0.01]}], "prestress": {"tolerance": 1e-10},
+                              "output": {"every": 1, "events": True}})
+            if name == "mesh":  # threads share its elements
+                (home / "column.vtu").write_text(column_of_hexahedra(300))
+                material = {"type": "linear", "young": 1.0, "poisson": 0.3, "density": 1.0}
+                scene.update({"model": {"type": "solids", "meshes": [{"file": "column.vtu", "material": material}]},
+                              "time": {"cfl": 0.5, "end": end}, "loads": [{"type": "gravity", "acceleration": [0, 0, -1]}],
+                              "output": {"every": 1}})
+                scene["interfaces"] = [{"law": "contact", "nodes": "mesh0.z_min",
+                                        "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]
             (home / f"{name}.json").write_text(json.dumps(scene))
             for call in CALLS:
-                done = self.run(Run(name, fault=(call, 0, "fail")), home / name).wait()
+                done = self.run(Run(name, fault=(call, 0, "fail"), threads=1 + (call == "worker")), home / name).wait()
                 demand(done == 0, self.text())
                 self.calls[name, call] = self.count()
             self.files[name] = files_in(home / name)
@@ -161,11 +189,17 @@ class Folder:
             self.while_stopped(action, program)
         code, said = program.wait(), self.world.text()
         how = action.fault[2] if self.has_fired(action, code) else ""
-        self.seen[f"{'resume' if action.resumes else 'run'} {how or 'undisturbed'}: {code}"] += 1
+        of_memory = f" {action.fault[0]}" if how and action.fault[0] in CALLS[-2:] else ""
+        self.seen[f"{'resume' if action.resumes else 'run'} {how or 'undisturbed'}{of_memory}: {code}"] += 1
         self.is_covered = code == 0 or how in SIGNALS or (code == 2 and not how and self.is_covered)
         if code == -signal.SIGKILL and how in ("kill", "stop"):
             self.owners.add(action.scene)
-        elif how in ("fail", "full") or (how == "stop" and action.meanwhile == "move"):
+        elif how == "fail" and of_memory and code != 0:
+            # Destructors of libraries allocate, too, and end the program.
+            demand(code in (1, 2, -signal.SIGABRT), "without memory it gives", code, said)
+            demand(("out of memory" in said or "bad_alloc" in said) and "crashed" not in said, said)
+            self.owners.add(action.scene)
+        elif (how in ("fail", "full") and not of_memory) or (how == "stop" and action.meanwhile == "move"):
             demand(code in (1, 2), "a failure of the disk gives", code, said)
             demand(f"{place}/" in said and "vtk" not in said, "no file is named:", said)
             self.owners.add(action.scene)
@@ -175,13 +209,13 @@ class Folder:
             demand(not action.resumes or not any(self.damaged.values()), "resumed in spite of damage:", self.damaged)
             self.expect_bits(action.scene, said)
         elif how in SIGNALS and code == 1:
-            self.expect_interrupted(action.scene, said)
+            self.expect_interrupted(action, said)
         else:
             self.expect_refused(action, code, said, before)
         self.forget_damage(before)
 
     def has_fired(self, action, code):
-        if not action.fault or code == -signal.SIGKILL:  # a killed program counts nothing
+        if not action.fault or code < 0:  # a killed program counts nothing
             return bool(action.fault)
         return code == 1 if action.fault[0] == "size" else self.world.count() >= action.fault[1]
 
@@ -221,14 +255,20 @@ class Folder:
         demand(f", state {json.loads(wanted['summary.json'])['state_hash']}" in said, "another state:", said)
         self.owners, self.damaged = {scene}, {}
 
-    def expect_interrupted(self, scene, said):
+    def expect_interrupted(self, action, said):
         demand("interrupted at step" in said and str(self.place) in said, said)
+        demand("warning" not in said, said)
+        if action.fault[0] == "malloc":
+            late = self.world.count() - action.fault[1]
+            demand(late < MOST_AFTER, "a signal is not heard during", late, "allocations")
         summary, rows = json.loads((self.place / "summary.json").read_text()), (self.place / "history.csv").read_bytes()
         demand(summary["interrupted"], "the summary tells nothing")
         demand(rows.count(b"\n") == 1 + summary["steps"], "other rows than steps")
         demand(not list(self.place.glob("*.partial")), "a stopped run left", list(self.place.glob("*.partial")))
-        self.owners.add(scene)
-        demand((self.place / "checkpoint.cbor").is_file(), "a stopped run left no checkpoint")
+        self.owners.add(action.scene)
+        has_checkpoint = (self.place / "checkpoint.cbor").is_file()
+        demand(has_checkpoint or not summary["steps"], "a stopped run left no checkpoint")
+        demand(("--resume" in said) == has_checkpoint, "with a checkpoint:", has_checkpoint, said)
 
     def expect_rows_kept(self, said):
         """No file is as large as it must be, but there is room to say so."""
@@ -278,11 +318,13 @@ def drawn_run(draw, world, scene, resumes):
         return Run(scene, resumes, threads=draw.choice([1, 2]))
     if how == "size":
         return Run(scene, resumes, ("size", draw.randint(8000, 40000), "full"))
-    call = "write" if how == "full" else draw.choice(CALLS) if how == "fail" else "any"
+    memory = ["malloc"] if how in SIGNALS or how == "kill" or (how == "fail" and scene in WITHOUT_FIELDS) else []
+    memory += ["worker"] if how == "fail" and scene == "mesh" else []
+    call = "write" if how == "full" else draw.choice((CALLS[:-2] + 2 * memory if how == "fail" else ["any"] + memory))
     first = 2 if how == "stop" else 1  # the first call opens the lock, so before it the folder is free
     fault = (call, draw.randint(first, max(first, world.calls[scene, call] // draw.choice([1, 2, 4, 8]))), how)
     meanwhile = draw.choice(["second", "second, kill", "move"]) if how == "stop" else ""
-    return Run(scene, resumes, fault, meanwhile)
+    return Run(scene, resumes, fault, meanwhile, 1 + (call == "worker"))
 
 
 def drawn_damage(draw):
@@ -334,8 +376,8 @@ class RunFolder(unittest.TestCase):
         if SEED != FIXED_SEED:
             return
         for event in ("run kill: -9", "resume kill: -9", "run full: 1", "run fail: 1", "run int: 1", "run term: 1",
-                      "run hup: 1", "run stop: 1", "run stop: 0", "resume undisturbed: 0", "resume undisturbed: 2",
-                      "damage: turn"):
+                      "run hup: 1", "run fail malloc: 1", "run fail worker: 1", "run int malloc: 1",
+                      "run stop: 1", "run stop: 0", "resume undisturbed: 0", "resume undisturbed: 2", "damage: turn"):
             self.assertGreater(seen[event], 0, event)
 
     def test_shortens_a_sequence_that_fails(self):

@@ -45,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Solved{"strengths_far_apart", 1.0}, Solved{"strong_bond_that_swings", 1.0},
                       Solved{"stiff_bond_on_a_sphere", 1.0}, Solved{"bond_after_a_step_left_unsolved", 1.0},
                       Solved{"opening_of_rounding", 1.0}, Solved{"ties_of_masses_far_apart", 0.05},
-                      Solved{"bond_that_leaves_by_rounding", 1.0}));
+                      Solved{"bond_that_leaves_by_rounding", 1.0}, Solved{"faces_that_turn", 1.0}));
 
 // A wedge of friction 3e5: its step is left unsolved, which the run says, and then a node may come in
 // further.

@@ -25,6 +25,7 @@ using Numbers = std::map<std::string, double>;
 struct Law {
   std::string name;
   Numbers numbers;
+  std::map<std::string, std::string> choices{};
 };
 
 struct Kind {
@@ -55,6 +56,10 @@ std::vector<Kind> kinds() {
   const auto six_decades = [](MadeSetup& s) { s.mass_decades = 6.0; };
   const auto wedged = [](MadeSetup& s) { s.normals = MadeSetup::Normals::wedged; };
   const auto redundant = [](MadeSetup& s) { s.normals = MadeSetup::Normals::redundant; };
+  const auto pressed = [](MadeSetup& s) { s.normals = MadeSetup::Normals::pressed, s.mass_decades = 3.8; };
+  const auto rounded = [](MadeSetup& s) { s.rounds_gaps = true; };
+  const std::vector<Law> moreau{{"contact", {}, {{"activation", "moreau"}}},
+                                {"coulomb", {{"restitution", 0.5}}, {{"activation", "moreau"}}}};
   const auto held = [](MadeSetup& s) { s.no_freedom = 0.3; };
   const auto turning = [](MadeSetup& s) { s.rotate = true; };
   const auto facets = [](MadeSetup& s) { s.ends = 4; };
@@ -77,6 +82,8 @@ std::vector<Kind> kinds() {
       {"redundant", scalar, friction, with(sized(3, 12), redundant), 0.1},
       {"six_decades_few", scalar, friction, with(sized(5, 12), six_decades), 0.15},
       {"six_decades", scalar, friction, with(sized(20, 50), six_decades), 0.45},
+      {"pressed", scalar, friction, with(sized(4, 6), pressed), 0.3},
+      {"rounded_gaps", scalar, moreau, with(sized(5, 9), rounded), 0.1},
       {"held_axes", full, friction, with(sized(2, 4), held), 0.1},
       {"held_axes_many", full, friction, with(sized(20, 50), held), 0.45},
       {"turning", full, friction, with(sized(5, 12), turning), 0.1},
@@ -103,7 +110,7 @@ std::vector<Kind> kinds() {
 ilaw::interface made_law(const Law& law, ilaw_delassus_form form, double mu) {
   Numbers numbers = law.numbers;
   if (law.name == "coulomb" || law.name == "rolling" || law.name == "impact") numbers["friction"] = mu;
-  return make_law(law.name, SetupBuilder({numbers, {}}, 3, form, ILAW_FRAME_GLOBAL));
+  return make_law(law.name, SetupBuilder({numbers, law.choices}, 3, form, ILAW_FRAME_GLOBAL));
 }
 
 int number(const char* name, int otherwise) {
@@ -116,7 +123,7 @@ struct Drawn {
   Drawn(const Kind& kind, int seed, int k) {
     Draw draw(static_cast<std::uint64_t>(seed) * 1000003U + static_cast<std::uint64_t>(k));
     MadeSetup setup = kind.setup;
-    setup.gap = std::vector<double>{0.0, 1e-6, 0.1}[static_cast<std::size_t>(k % 3)];
+    if (!setup.rounds_gaps) setup.gap = std::vector<double>{0.0, 1e-6, 0.1}[static_cast<std::size_t>(k % 3)];
     const double mu = std::vector<double>{0.1, 0.5, 1.0, 2.0}[static_cast<std::size_t>(k / 3 % 4)];
     for (const Law& law : kind.laws) laws.push_back(made_law(law, kind.form, mu));
     std::vector<const ilaw::interface*> pointers;
@@ -152,7 +159,10 @@ TEST_P(MadeOf, IsSolvedInTheScaleOfItsInput) {
       continue;
     }
     ASSERT_LE(made.momentum, 1e-12) << k;
-    const ilaw_coupled_report report = problem.solve(solver, {});
+    ilaw_coupled_options options{};
+    options.tolerance = k % 3 != 1 && k % 2 ? 1e-6 : 1e-10;  // which closes no gap of 1e-6
+    const double most = 10.0 * options.tolerance;
+    const ilaw_coupled_report report = problem.solve(solver, options);
     const MadeAudit found = problem.audit(report);
     ++counts.problems;
     counts.sweeps += report.sweeps;
@@ -163,11 +173,11 @@ TEST_P(MadeOf, IsSolvedInTheScaleOfItsInput) {
     counts.work += found.work > 1e-9;
     if (report.message)
       ++counts.unsolved;
-    else if (found.residual > 1e-8) {
+    else if (found.residual > most) {
       ++counts.wrong;
-      counts.worst = std::max(counts.worst, found.residual);
+      counts.worst = std::max(counts.worst, found.residual / most);
     }
-    if (prints && (report.message || found.residual > 1e-8))
+    if (prints && (report.message || found.residual > most))
       std::printf("  %d: residual %.1e says %.1e, sweeps %u, method %u: %s\n", k, found.residual,
                   report.residual, report.sweeps, report.method, report.message ? report.message : "solved");
   }

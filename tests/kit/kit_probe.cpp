@@ -227,25 +227,10 @@ struct limit_probe {
   V stiffness;
 
   static constexpr law_card card{
-      .id = "limit_probe", .title = "Limit by H", .doc = "h = 2/sqrt(k (h_N + h_T/4))", .inputs = 0};
+      .id = "limit_probe", .title = "Spring that limits the step", .doc = "h = 2/sqrt(k h_N), where closed"};
   static constexpr auto& references = no_references;
   static constexpr parameter<limit_probe> parameters[] = {
       {.member = &limit_probe::stiffness, .name = "stiffness", .default_value = 1.0}};
-  template <class Node>
-  status_of<V> step(Node&) const {
-    return status::free;
-  }
-  V stable_velocity_step(V h_n, V h_t) const { return 2.0 / square_root(stiffness * (h_n + 0.25 * h_t)); }
-};
-template <class V>
-struct node_limit_probe {
-  V stiffness;
-
-  static constexpr law_card card{
-      .id = "node_limit_probe", .title = "Limit by node", .doc = "h = 2/sqrt(k h_N), where closed"};
-  static constexpr auto& references = no_references;
-  static constexpr parameter<node_limit_probe> parameters[] = {
-      {.member = &node_limit_probe::stiffness, .name = "stiffness", .default_value = 1.0}};
   template <class Node>
   status_of<V> step(Node&) const {
     return status::free;
@@ -328,4 +313,4 @@ struct copy_probe {
 }  // namespace
 
 ILAW_PLUGIN("kit_probe", "1.0.0", "tests", "BSD-3-Clause", kit_probe, pack_probe, solver_probe, limit_probe,
-            node_limit_probe, promise_breaker, path_probe, copy_probe)
+            promise_breaker, path_probe, copy_probe)

@@ -3,6 +3,8 @@
 #include <ilaw/kit/pack.hpp>
 #include <ilaw/kit/roots.hpp>
 
+#include "support/random.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -54,8 +56,10 @@ TEST(RootBetween, FindsAJump) {
 
 // x^2 = 2 c^2, where squares of x underflow or overflow.
 TEST(RootBetween, FindsRootsOfAnySize) {
-  for (const double c : {1e-300, 1e-200, 1e-160, 1e-100, 1.0, 1e200})
+  ilaw::testing::Random random(7);
+  for (int k = 0; k < 200; ++k)
     for (const bool is_exact : {true, false}) {
+      const double c = random.decades(-305.0, 200.0);
       const double found = root_between(0.0, 2.0 * c, 2.0 * c, true, [&](double x) {
         return root_trial<double>{x / c * (x / c) - 2.0, 2.0 / c, 2.0 * x / c, c, is_exact};
       });
@@ -68,10 +72,14 @@ TEST(RootBetween, IsNoNumberWhereItsFunctionIsNone) {
   const auto none = [](double) { return root_trial<double>{std::nan(""), 1.0, 1.0, 1.0, true}; };
   EXPECT_TRUE(std::isnan(root_between(0.0, 2.0, 1.0, true, none)));
   EXPECT_EQ(root_between(0.0, 2.0, 1.0, false, none), 1.0);
-  const auto beside = [](double x) {
-    return root_trial<double>{x > 1.5 ? std::nan("") : x - 1.0, 1.0, 1.0, 1.0, true};
-  };
-  EXPECT_EQ(root_between(0.0, 2.0, 2.0, true, beside), 1.0);
+  ilaw::testing::Random random(8);
+  for (int k = 0; k < 200; ++k) {
+    const double root = random(0.1, 1.9), end = random(root, 2.0);
+    const auto beside = [&](double x) {
+      return root_trial<double>{x > end ? std::nan("") : x - root, 1.0, 1.0, 1.0, true};
+    };
+    EXPECT_NEAR(root_between(0.0, 2.0, random(0.0, 2.0), true, beside), root, 1e-15) << end;
+  }
 }
 
 // f is called last at the result, so what it keeps belongs to that.

@@ -48,8 +48,6 @@ TEST(StableStep, OfAnExplicitSpringIsWhereItsMotionBeginsToGrow) {
     }
 }
 
-// For springs without friction, whose step falls with H alone, the largest H is looked for; for others each
-// node's step.
 TEST(StableStep, IsTheSmallestOfTheBatchAndOfAllSprings) {
   for (const auto& [friction, stiffest] : {std::pair{0.3, 4000.0}, {0.0, 1000.0}}) {
     Parameters parameters = springs(1000.0, 0.0);

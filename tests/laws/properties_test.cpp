@@ -164,6 +164,25 @@ TEST_P(AnyLaw, KeepsItsConditions) {
     EXPECT_GT(seen[static_cast<std::size_t>(status_of(status))], 40 * part_of(histories)) << status;
 }
 
+// A node that was stopped leaves with the rounding of its free velocity, which is no slip.
+TEST_P(AnyLaw, TakesRoundingForRest) {
+  constexpr std::size_t few_steps = 5;
+  Runner run(law.law, law.parameters, nodes), rounded(law.law, law.parameters, nodes);
+  follow(run, [&](std::size_t k) {
+    if (k >= few_steps) return;
+    for (Vector& v : nodes.v_previous) v[1] = v[2] = 0.0;
+    ASSERT_EQ(run.evaluate(), ILAW_OK) << run.report.reason;
+    for (std::size_t i = 0; i < nodes.count; ++i)
+      for (std::size_t c = 1; c < nodes.dimension; ++c) nodes.v_previous[i][c] = 2 * ulp * nodes.v_free[i][c];
+    rounded.state = run.before;
+    rounded.time = run.time;
+    ASSERT_EQ(rounded.evaluate(), ILAW_OK) << rounded.report.reason;
+    for (std::size_t i = 0; i < nodes.count; ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        ASSERT_NEAR(run.r[i][c], rounded.r[i][c], 1e-9 * (1.0 + length(run.r[i])));
+  });
+}
+
 INSTANTIATE_TEST_SUITE_P(Laws, AnyLaw, ::testing::ValuesIn(combinations_of(law_cases("properties"))),
                          name_of_combination);
 

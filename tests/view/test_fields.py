@@ -112,6 +112,22 @@ def test_fields_are_those_of_the_history(tmp_path, name):
     assert expected.get(name, set()) <= seen
 
 
+def test_traction_is_over_an_overlap_that_has_changed(tmp_path):
+    elastic = {"type": "linear", "young": 1e6, "poisson": 0, "density": 1000}
+    low = {"name": "a", "size": [1.1, 1, 0.5], "elements": [3, 3, 1], "material": elastic}
+    high = {"name": "b", "corner": [0.25, 0, 0.5], "size": [1, 1, 0.5], "elements": [4, 4, 1], "velocity": [5, 0, -1]}
+    scene = {"model": {"type": "blocks", "blocks": [low, {**high, "material": elastic}]}, "time": {"cfl": 0.9, "end": 0.03},
+             "loads": [{"type": "motion", "nodes": "a"}],
+             "interfaces": [{"law": "contact", "nodes": "b.z_min", "against": {"surface": "a.z_max"}}],
+             "output": {"watch": ["b.z_min"], "every": 5, "fields": 5, "contact": True}}  # fmt: skip
+    read = Run(run(scene, tmp_path))
+    names, rows = read.history()
+    own = range(32, 57)
+    pressure = np.array([rows[:, names.index(f"n{n}.pressure")] for n in own]).T
+    found = [read_grid(file).nodes["traction"][own, 2] for _, file in read.field_files()[1:]]
+    assert np.array(found) == pytest.approx(pressure, rel=1e-12) and (pressure > 0).any()
+
+
 def test_mesh_and_obstacles_are_those_of_the_scene(tmp_path):
     read = Run(run({**shipped("block_impact"), "output": {"fields": 50}}, tmp_path))
     grid = read_grid(read.field_files()[0][1])

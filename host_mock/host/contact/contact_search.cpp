@@ -44,7 +44,7 @@ void ContactSearch::choose(const StepView& step, const ObstacleMotion& obstacle,
 
 bool ContactSearch::is_due(const StepView& step, double closing_before, double closing_after) {
   if (!finds_near_) {
-    const bool due = proximity_.refresh_due(step.dt, closing_before, closing_after);
+    const bool due = proximity_.refresh_due(step.dt, closing_before, closing_after) || is_hostile;
     if (!acts_) proximity_.invalidate();
     return due && acts_;
   }
@@ -55,7 +55,7 @@ bool ContactSearch::is_due(const StepView& step, double closing_before, double c
   const double travelled = ProximityFilter::rounded_up(step.dt * closing_before),
                ahead = ProximityFilter::rounded_up(step.dt * closing_after);
   const Approach approach{travelled, ahead + largest_offset_, is_forced_, near_.empty()};
-  is_forced_ = false;
+  is_forced_ = is_hostile;
   return setup_.counterpart->find_near(step.u, approach);
 }
 

@@ -42,7 +42,7 @@ const ilaw_contacts& CoupledInterface::open(const StepView& step) {
     contacts.vector(contacts.impulse, contact).setZero();
     contacts.status[k] = ILAW_FREE;
     if (point.is_beyond_border && setup.counterpart->is_held(contacts.node_index[k])) ++interface_.sums_.left;
-    if (point.area > 0.0 && !contacts.area.empty()) contacts.area[k] = setup.area_factor * point.area;
+    if (!contacts.area.empty()) contacts.area[k] = setup.area(contacts.node_index[k], point);
     if (!point.partners.empty()) {
       contacts.point[k] = point;
       interface_.find_delassus(k);

@@ -38,6 +38,8 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
       search_(setup_, law_, contacts_),
       obstacle_(setup_, dimension_),
       amounts_(law_.info().amount_count) {
+  // Nothing would give or take the energy that follows an overlap.
+  if ((info().capabilities & ILAW_CAN_STORE_ENERGY) != 0) setup_.counterpart->expect_springs();
   if (setup_.heat) heat_.emplace(law_.info(), setup_.heat->obstacle_temperature);
 }
 
@@ -47,8 +49,8 @@ void Interface::check(const Refusal& refusal, double dt) const {
   if (refusal.contact < 0) return check(refusal, "");
   std::string node = std::to_string(node_of(refusal.contact));
   if (refusal.code == ILAW_BAD_NODES)
-    node += formatted(" (H = %.6g, area %.6g, step %.6g)", delassus(refusal.contact),
-                      setup_.areas[at(node_index_of(refusal.contact))], dt);
+    node +=
+        formatted(" (H = %.6g, area %.6g, step %.6g)", delassus(refusal.contact), area(refusal.contact), dt);
   check(refusal, node);
 }
 
@@ -192,7 +194,7 @@ Interface::Rubbing Interface::rubbing(int contact_index, const StepView& step) c
   };
   const Vector v = relative(contact_index, step.v_before) - obstacle_.velocity_before() - surface.before;
   const Vector r = impulse(contact_index);
-  const double area = point.area > 0.0 ? setup_.area_factor * point.area : setup_.areas[at(node_index)];
+  const double area = setup_.area(node_index, point);
   return {r.dot(point.normal) / (step.dt * area), along_surface(r) / (step.dt * area),
           step.dt * along_surface(v)};
 }

@@ -80,6 +80,9 @@ class Interface {
   Vector velocity_of(int contact_index, const Vector& impulse) const;
   // Without partners where the counterpart is rigid.
   const ContactPoint& point(int contact_index) const;
+  double area(int contact_index) const {
+    return setup_.area(node_index_of(contact_index), point(contact_index));
+  }
   // Accepted state; entry: double of the node's state.
   double state(int contact_index, int entry) const {
     return contacts_.state.at(at(contact_index), at(entry));

@@ -28,7 +28,7 @@ struct InterfaceSetup {
   std::string edges_of;            // the interface that these edge rows belong to; empty: no edge rows
   Arguments arguments;
   std::vector<int> nodes;
-  std::vector<double> areas;  // tributary, per node
+  std::vector<double> areas;  // per node: of the overlap at the start if there is one, else tributary
   double area_factor = 1.0;   // which they include
   std::unique_ptr<Counterpart> counterpart;
   double birth = 0.0, death = std::numeric_limits<double>::infinity();  // while birth <= t < death
@@ -39,6 +39,10 @@ struct InterfaceSetup {
   bool keeps_all_active = false;        // also contacts that cannot be reached: same results, more work
   std::optional<HeatSetup> heat;
 
+  // That a contact stands for, which its law and its results have.
+  double area(int node_index, const ContactPoint& point) const {
+    return point.area > 0.0 ? area_factor * point.area : areas[static_cast<std::size_t>(node_index)];
+  }
   double gap_offset(int node_index) const {
     if (own_gap_offsets.empty()) return common_gap_offset;
     return common_gap_offset + own_gap_offsets[static_cast<std::size_t>(node_index)];

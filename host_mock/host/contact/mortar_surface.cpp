@@ -39,6 +39,20 @@ Eigen::AlignedBox3d bounds_of(const FacetShape& corners) {
   return box;
 }
 
+// How far a facet lies from the points of its box, at most: boxes in other axes are that much farther apart.
+double room_in_box(const FacetShape& corners) {
+  const Eigen::AlignedBox3d box = bounds_of(corners);
+  double most = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d at = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < corners.count; ++k)
+      least = std::min(least, (at - corners.at[k]).squaredNorm());
+    most = std::max(most, least);
+  }
+  return std::sqrt(most);
+}
+
 }  // namespace
 
 MortarSurface::MortarSurface(const Model& model, const NodeSet& own, const NodeSet& surface)
@@ -104,7 +118,7 @@ bool MortarSurface::find_near(const Dofs& u, const Approach& approach) {
   at_ = model_.position() + u;
   if (is_far) return approach.is_forced;
   travelled_ = 0.0;
-  const bool is_due = !is_list_made_ || !(motion() + approach.reach < horizon_);
+  const bool is_due = !is_list_made_ || !(motion() + std::max(approach.reach, widest_) < horizon_);
   if (is_due) list_pairs(approach.reach);
   refresh();
   return is_due || approach.is_forced;
@@ -117,13 +131,18 @@ void MortarSurface::follow(const Dofs& u) {
   refresh();
 }
 
+// With boxes of its own axes the search finds all pairs whose boxes are within the horizon in these axes.
 void MortarSurface::find_candidates() {
+  double own = 0.0, main = 0.0;
+  for (const Patch& patch : patches_) own = std::max(own, room_in_box(corners_of(patch)));
+  for (std::size_t k = 0; k < facets().size(); ++k)
+    main = std::max(main, room_in_box(corners_of(static_cast<std::int32_t>(k))));
   ilaw_facets_overlaps_of asked{};
   asked.struct_size = sizeof asked;
   asked.corner_count = 4;
   asked.count = static_cast<std::int64_t>(patches_.size());
   asked.points = face_points_.data();
-  asked.distance = horizon_;
+  asked.distance = horizon_ + own + main;
   asked.first = first_.data();
   do {
     found_.resize(std::max(found_.size(), static_cast<std::size_t>(first_.back())));
@@ -133,12 +152,27 @@ void MortarSurface::find_candidates() {
   } while (first_.back() > asked.capacity);
 }
 
+// The largest gap of rows that act on springs, which reach farther than contact.
+double MortarSurface::widest_bond() {
+  double widest = 0.0;
+  if (!has_springs_) return widest;
+  find_normals();
+  for (const std::int32_t k : listed_nodes_) {
+    if (!MeshSurface::is_held(k)) continue;
+    locate(static_cast<std::size_t>(k));
+    const Row& row = rows_[static_cast<std::size_t>(k)];
+    if (row.area > 0.0) widest = std::max(widest, row.apart.dot(row.normal));
+  }
+  return widest;
+}
+
 // Boxes of the search are those of an earlier step, with a margin: the list must not depend on which.
 void MortarSurface::list_pairs(double reach) {
   if (is_list_made_) past_motion_ += motion();
   is_list_made_ = true;
   at_list_ = at_;
-  horizon_ = reach + listed_beyond * shortest_edge();
+  widest_ = widest_bond();
+  horizon_ = std::max(reach, widest_) + listed_beyond * shortest_edge();
   find_candidates();
   listed_.clear();
   for (std::size_t p = 0; p < patches_.size(); ++p) {
@@ -283,12 +317,16 @@ void MortarSurface::locate(std::size_t node_index) {
 
 void MortarSurface::find_contact(int node_index, const Dofs& u, double time, ContactPoint& found) const {
   const Row& row = rows_[static_cast<std::size_t>(node_index)];
-  if (row.area == 0.0) return MeshSurface::find_contact(node_index, u, time, found);
+  if (row.area == 0.0) {
+    MeshSurface::find_contact(node_index, u, time, found);
+    if (found.is_beyond_border) found.gap = std::max(found.gap, horizon_);  // out of reach of contact
+    return;
+  }
   found.clear();
   found.gap = row.apart.dot(row.normal);
   found.normal = row.normal;
   found.own_weight = row.own_weight;
-  found.area = row.area;
+  found.area = has_springs_ ? 0.0 : row.area;
   found.own_partners = row.own_partners;
   for (const Partner& partner : row.partners) found.partners.add(partner);
 }
@@ -312,7 +350,7 @@ void MortarSurface::save(std::ostream& out) const {
   MeshSurface::save(out);
   write_value(out, std::uint8_t{is_list_made_});
   write_array(out, at_list_.data(), static_cast<std::size_t>(at_list_.size()));
-  for (const double value : {horizon_, travelled_, past_motion_}) write_value(out, value);
+  for (const double value : {horizon_, widest_, travelled_, past_motion_}) write_value(out, value);
   write_sized(out, listed_);
   for (const Patch& patch : patches_) {
     write_value(out, patch.motion);
@@ -334,7 +372,7 @@ void MortarSurface::load(std::istream& in) {
   read_value(in, is_list_made);
   is_list_made_ = is_list_made != 0;
   read_array(in, at_list_.data(), static_cast<std::size_t>(at_list_.size()));
-  for (double* const value : {&horizon_, &travelled_, &past_motion_}) read_value(in, *value);
+  for (double* const value : {&horizon_, &widest_, &travelled_, &past_motion_}) read_value(in, *value);
   listed_ = read_sized<std::int32_t>(in, patches_.size());
   check_indices(listed_, patches_.size());
   for (Patch& patch : patches_) {

@@ -22,7 +22,7 @@ json identity_of(const Scene& scene) {
                     {"version", interface->library().plugin().version},
                     {"state_size", interface->info().state_size},
                     {"state_version", interface->info().state_version}});
-  return {{"format", "ilaw checkpoint 10"},
+  return {{"format", "ilaw checkpoint 11"},
           {"program", ILAW_VERSION},
           {"scene", scene.source},
           {"laws", laws},

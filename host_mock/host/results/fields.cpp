@@ -109,7 +109,7 @@ void add_traction(vtkUnstructuredGrid& grid, const Interface& interface, const s
   for (std::size_t k = 0; k < areas.size(); ++k)
     if (areas[k] > 0.0) traction->SetTuple3(interface.nodes()[k], 0.0, 0.0, 0.0);
   for (const std::int32_t contact_index : interface.active()) {
-    const double area = areas[static_cast<std::size_t>(interface.node_index_of(contact_index))];
+    const double area = interface.area(contact_index);
     if (!(area > 0.0)) continue;
     const auto impulse = interface.impulse(contact_index);
     for (int c = 0; c < static_cast<int>(impulse.size()); ++c)

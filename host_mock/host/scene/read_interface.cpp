@@ -187,14 +187,6 @@ std::unique_ptr<Interface> make_interface(const json& interface, std::size_t num
   }
 }
 
-// Energy per area would follow an overlap that changes, and nothing would give it: a law that stores energy
-// has the areas of nodes unless the scene asks for weights.
-bool has_weights_unasked(const json& interface, const Interface& made) {
-  return (made.info().capabilities & ILAW_CAN_STORE_ENERGY) != 0 &&
-         dynamic_cast<const MortarSurface*>(made.setup().counterpart.get()) != nullptr &&
-         !interface["against"].contains("discretization");
-}
-
 // ---- edge rows: no averaged constraint belongs to a sharp edge of the main face -------------------------
 
 // A law that can pull bonds the faces, and needs no edge rows.
@@ -261,16 +253,8 @@ void read_interfaces(Scene& scene) {
   for (std::size_t i = 0; i < interfaces.size(); ++i) {
     const std::string pointer = at("/interfaces", i);
     const NodeSet own = select_nodes(interfaces[i]["nodes"], *scene.model, pointer + "/nodes");
-    const auto make = [&](const json& interface) {
-      return make_interface(interface, i, scene, own,
-                            read_counterpart(interface, own, *scene.model, pointer));
-    };
-    scene.interfaces.push_back(make(interfaces[i]));
-    if (has_weights_unasked(interfaces[i], *scene.interfaces.back())) {
-      json other = interfaces[i];
-      other["against"]["discretization"] = "node_to_facet";
-      scene.interfaces.back() = make(other);
-    }
+    scene.interfaces.push_back(make_interface(interfaces[i], i, scene, own,
+                                              read_counterpart(interfaces[i], own, *scene.model, pointer)));
   }
   for (std::size_t i = 0; i < interfaces.size(); ++i)
     if (auto edges = make_edge_rows(i, scene)) scene.interfaces.push_back(std::move(edges));

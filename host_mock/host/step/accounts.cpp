@@ -161,7 +161,7 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
         energy.scale));
   if (tally_.left_surface > 0)
     warnings.push_back(formatted(
-        "%lld node(s) went over the border of a surface while they touched it: beyond it nothing holds them; a node "
+        "%lld node(s) went over the border of a surface while they touched it: beyond it only bonds hold them; a node "
         "that shall stay needs a surface that reaches farther",
         static_cast<long long>(tally_.left_surface)));
   if (const std::string warning = step_warning(dt); !warning.empty()) warnings.push_back(warning);

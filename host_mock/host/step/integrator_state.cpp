@@ -151,6 +151,10 @@ void Integrator::set_tolerance(double tolerance) {
 void Integrator::save(std::ostream& out) const {
   write_value(out, steps_);
   write_value(out, has_started_);
+  if (prestressed_) {
+    write_value(out, prestressed_->steps);
+    write_value(out, prestressed_->residual);
+  }
   for (const Dofs* dofs : {&u_, &v_}) write_array(out, dofs->data(), static_cast<std::size_t>(dofs->size()));
   accounts_.save(out);
   for (const auto& interface : interfaces_) interface->save(out);
@@ -161,6 +165,10 @@ void Integrator::save(std::ostream& out) const {
 void Integrator::load(std::istream& in) {
   read_value(in, steps_);
   read_value(in, has_started_);
+  if (prestress_) {
+    read_value(in, prestressed_.emplace().steps);
+    read_value(in, prestressed_->residual);
+  }
   for (Dofs* dofs : {&u_, &v_}) read_array(in, dofs->data(), static_cast<std::size_t>(dofs->size()));
   accounts_.load(in);
   if (has_started_ && !interfaces_.empty()) find_contact_mass(times_of(1));

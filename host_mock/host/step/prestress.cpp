@@ -38,7 +38,10 @@ Dofs Integrator::open_impulse(bool from_rest) {
 // A step of the relaxation: obstacles and motions stand still where times.until is times.after. From rest it
 // has half a step of the velocity, like the start of a run: a whole one would make fast vibrations grow.
 void Integrator::relax(StepTimes times, bool from_rest) {
-  if (stop_requested()) throw Interrupted("the prestress was interrupted");
+  if (stop_requested()) {
+    stop();  // the speed of a relaxation is no motion of the run
+    throw Interrupted("the prestress was interrupted");
+  }
   has_begun_step_ = true;
   v_before_.swap(v_);
   move();

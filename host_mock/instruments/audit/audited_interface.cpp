@@ -120,7 +120,7 @@ AuditedInterface::Call AuditedInterface::call_of(int node_index, const AuditedSt
   const std::size_t k = static_cast<std::size_t>(node_index);
   const bool is_active = interface_.is_active(contact);
   Call call;
-  call.area = interface_.setup().areas[k];
+  call.area = interface_.setup().area(node_index, interface_.point(contact));
   const bool is_partnered = !interface_.setup().counterpart->partners().empty();
   if (is_partnered) {
     const ContactPoint& point = interface_.point(contact);
@@ -128,8 +128,8 @@ AuditedInterface::Call AuditedInterface::call_of(int node_index, const AuditedSt
     Vector from = Vector::Zero(d_);
     point.for_each_node(interface_.nodes()[k],
                         [&](int node, double weight) { from += weight * model_.position(node, step.u); });
-    call.gap = from.dot(call.normal) - interface_.setup().gap_offset(node_index);
-    if (point.area > 0.0) call.area = interface_.setup().area_factor * point.area;
+    call.gap = point.is_beyond_border ? point.gap
+                                      : from.dot(call.normal) - interface_.setup().gap_offset(node_index);
   } else {
     const ContactPoint point = interface_.setup().counterpart->contact_point(node_index, step.u, step.time);
     call.normal = point.normal;
@@ -237,7 +237,7 @@ void AuditedInterface::check_node(int node_index, const AuditedStep& step) {
                              (own.impulse - call.impulse).cwiseProduct(call.delassus).norm() / speed));
 }
 
-// The host lets a node go there, so that no law is to be asked.
+// Bonds alone go on there.
 void AuditedInterface::check_beyond_border(int node_index) const {
   const double impulse = interface_.impulse(interface_.contact_at(node_index)).norm();
   if (impulse > 0.0) fail(node_index, formatted("impulse: %.6g beyond the border of the surface", impulse));
@@ -274,12 +274,13 @@ void AuditedInterface::close(const AuditedStep& step) {
   energy_ = {};
   work_scale_ = work_rounding_ = 0.0;
   interface_.setup().counterpart->follow(step.u);
-  const bool is_partnered = !interface_.setup().counterpart->partners().empty();
+  const bool is_partnered = !interface_.setup().counterpart->partners().empty(),
+             adheres = (law_.info().capabilities & ILAW_CAN_ADHERE) != 0;
   for (int k = 0; k < static_cast<int>(states_.size()); ++k) {
     const int contact = interface_.contact_at(k);
     // What a node out of reach of other bodies would face, nobody has looked for; nor its temperature.
     if ((is_partnered || interface_.heat()) && !interface_.is_active(contact)) continue;
-    if (contact >= 0 && interface_.point(contact).is_beyond_border)
+    if (contact >= 0 && interface_.point(contact).is_beyond_border && !adheres)
       check_beyond_border(k);
     else
       check_node(k, step);

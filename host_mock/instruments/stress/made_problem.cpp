@@ -85,6 +85,8 @@ MadeProblem::MadeProblem(const std::vector<const interface*>& laws, ilaw_delassu
     contacts_.push_back(contact);
   }
   make(v_free);
+  for (Contact& contact : contacts_)
+    if (setup_.rounds_gaps && contact.gap == 0.0) contact.gap = 1e-15 * setup_.speed * setup_.step;
   sort_by_law();
 }
 
@@ -97,7 +99,10 @@ MadeProblem::Wrench MadeProblem::random(Draw& draw, int count) const {
 void MadeProblem::draw_bodies(Draw& draw) {
   bodies_.resize(static_cast<std::size_t>(setup_.bodies));
   for (Body& body : bodies_) {
-    const double inverse = std::pow(10.0, -draw.uniform(0.0, setup_.mass_decades));
+    const bool in_turn = setup_.normals == MadeSetup::Normals::pressed,
+               is_first = (&body - bodies_.data()) % 2 == 0;
+    const double inverse = std::pow(
+        10.0, -(in_turn ? is_first ? 0.0 : setup_.mass_decades : draw.uniform(0.0, setup_.mass_decades)));
     body.inverse.head<3>().setConstant(inverse);
     if (setup_.no_freedom > 0.0)
       for (double& axis : body.inverse.head<3>())
@@ -112,7 +117,8 @@ void MadeProblem::draw_bodies(Draw& draw) {
 }
 
 // Wedged: all at the first bodies, their normals in one plane, so that they press against each other.
-// Redundant: several contacts of the same pair of bodies with the same normal.
+// Redundant: several contacts of the same pair of bodies with the same normal. Pressed: a light body between
+// a heavy one and another one or a wall, by impulses up to what stops the heavy one, which nearly cancel.
 void MadeProblem::draw_contact(Draw& draw, Contact& contact) {
   const int last = setup_.bodies - 1;
   contact.body = {draw.whole(0, last)};
@@ -131,6 +137,15 @@ void MadeProblem::draw_contact(Draw& draw, Contact& contact) {
     contact.weight = twin.weight;
     contact.other_weight = twin.other_weight;
     contact.normal = twin.normal;
+  }
+  if (setup_.normals == MadeSetup::Normals::pressed) {
+    const bool is_second = contacts_.size() % 2 == 1;
+    contact.body = {is_second ? contacts_.back().body[0] : draw.whole(0, last / 2) * 2};
+    contact.counterpart = {is_second && draw.chance(0.3) ? -1
+                                                         : std::min(draw.whole(0, last / 2) * 2 + 1, last)};
+    if (is_second) contact.normal = -contacts_.back().normal;
+    contact.pressure = is_second ? contacts_.back().pressure
+                                 : setup_.speed * std::pow(10.0, draw.uniform(0.0, setup_.mass_decades));
   }
   constexpr double radius = 0.5, other_radius = 0.3;
   if (setup_.rotate) {
@@ -169,7 +184,8 @@ MadeProblem::Wrench MadeProblem::draw_velocity(Draw& draw, Contact& contact) {
   };
   Wrench v = random(draw, width()), v_before = random(draw, width());
   turn(v_before, -1.0);
-  turn(v, draw.chance(setup_.open) ? 1.0 : -1.0);
+  turn(v, contact.pressure == 0.0 && draw.chance(setup_.open) ? 1.0 : -1.0);
+  v.head<3>() -= contact.pressure * contact.normal;
   contact.wall_before = relative(contact, &Body::before) - v_before;
   contact.wall = relative(contact, &Body::free) - v;  // v_smooth is v_free
   contact.state = first_state(contact);

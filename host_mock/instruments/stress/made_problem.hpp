@@ -19,16 +19,17 @@
 namespace ilaw::host {
 
 struct MadeSetup {
-  enum class Normals { any, wedged, redundant };
+  enum class Normals { any, wedged, redundant, pressed };
 
   int bodies = 1, contacts = 2;
-  double mass_decades = 0.0;  // masses from 1 to 10^this
+  double mass_decades = 0.0;  // masses from 1 to 10^this; pressed: 1 and 10^this in turn
   double no_freedom = 0.0;    // probability that a body cannot move along an axis; with the form FULL
   bool rotate = false;        // with the form FULL; spheres always do
   Normals normals = Normals::any;
-  int ends = 1;           // bodies on either side at most, with weights: the nodes of facets
-  bool has_axes = false;  // weights are matrices, of nodes with axes of their own; with the form FULL
-  double gap = 0.0;       // largest, over speed times step
+  int ends = 1;              // bodies on either side at most, with weights: the nodes of facets
+  bool has_axes = false;     // weights are matrices, of nodes with axes of their own; with the form FULL
+  double gap = 0.0;          // largest, over speed times step
+  bool rounds_gaps = false;  // closed ones are open by a rounding
   double open = 1.0 / 3.0;
   double speed = 1.0, step = 1e-3;
 };
@@ -73,7 +74,7 @@ class MadeProblem {
     std::vector<std::int32_t> body{0}, counterpart{-1};  // -1: a wall, or no body
     std::vector<double> weight, other_weight;            // as coupled.h has them, none for one body
     Vector normal = Vector::Zero(), arm = normal, other_arm = normal;
-    double gap = 0.0;
+    double gap = 0.0, pressure = 0.0;  // velocity by which it is pressed, see draw_contact
     Wrench wall = Wrench::Zero(), wall_before = wall, made = wall, impulse = wall;
     std::vector<double> state;
     bool has_broken = false;  // its bond, at the solution of a round: then the law is told so

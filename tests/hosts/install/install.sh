@@ -30,7 +30,7 @@ case $way in
 esac
 
 echo "== files"
-for file in bin/ilaw bin/ilaw-describe lib/ilaw/contact.so lib/ilaw/contact.json include/ilaw/ilaw.h include/ilaw/kit/detail/evaluate.hpp lib/libilaw_loader.a \
+for file in bin/ilaw bin/ilaw-describe lib/ilaw/contact.so lib/ilaw/contact.json include/ilaw/ilaw.h include/ilaw/kit/detail/evaluate.hpp share/ilaw/device_kit/ilaw/device/kernel.hpp lib/libilaw_loader.a \
             lib/libilaw_loader.so lib/libilaw_loader.so.1 \
             lib/libilaw_coupled.a lib/libilaw_coupled.so lib/libilaw_coupled.so.1 include/ilaw/coupled.h lib/cmake/ilaw/ilawConfig.cmake lib/pkgconfig/ilaw.pc \
             lib/libilaw_search.a lib/libilaw_search.so lib/libilaw_search.so.1 include/ilaw/search.h lib/pkgconfig/ilaw_search.pc \

@@ -1,7 +1,6 @@
 """Contacts that share bodies against what is known without them: weight, momentum, energy, closed forms of impacts and
 grooves, ruptures, and what the report says of problems that plain iterations do not solve. hosts/coupled_made_test.cpp
 draws problems from their solutions, test_solver_machine.py draws calls."""
-import ctypes
 import itertools
 import os
 import pathlib
@@ -12,7 +11,6 @@ import numpy as np
 import pytest
 
 import ilaw
-from ilaw import _abi
 from ilaw.coupled import Bodies, Contacts, Method, Solver
 
 G, UP = 10.0, np.array([0.0, 0.0, 1.0])
@@ -129,30 +127,6 @@ def test_what_is_not_solved_is_named():
         assert part in report.message
     early = column(40).solve(tolerance=1e-12, most_sweeps=5)
     assert early.worst_group == 0 and early.worst_contact >= 0 and early.method == Method.CONJUGATE
-
-
-@pytest.mark.parametrize("islands", [1, 2])
-def test_contacts_that_are_refused_late_are_counted(islands):
-    """By a law that refuses a node from its 300th call on."""
-    high = Problem("coulomb", friction=0.3)
-    for k in range(400):
-        high.touch(high.add((0, 0, -1e-2), 1.0), k - 1 if k % (400 // islands) else -1)
-    high.make()
-    law, calls, why = _abi.law.from_buffer_copy(high.contacts._struct.law[0]), itertools.count(1), ctypes.c_char_p(b"too tired")
-    usual = type(law.evaluate)(ctypes.cast(law.evaluate, ctypes.c_void_p).value)  # a member that is read is a reference
-
-    def evaluate(instance, batch, report):
-        code = usual(instance, batch, report)
-        if next(calls) < 300:
-            return code
-        ctypes.cast(batch[0].status, ctypes.POINTER(ctypes.c_uint8))[0] = _abi.Status.BAD_INPUT
-        report[0].bad_count, report[0].first_bad_node, report[0].reason = 1, 0, why
-        return _abi.Code.BAD_NODES
-
-    law.evaluate = type(usual)(evaluate)
-    high.contacts._struct.law = ctypes.pointer(law)
-    report = high.solve(tolerance=1e-12, most_sweeps=200, bad_nodes="report")
-    assert report.bad_count > 0 and report.reason == "too tired"
 
 
 def test_more_iterations_are_no_worse():

@@ -255,7 +255,6 @@ def test_unaligned_numbers_are_refused():
         ({"frame": "inertial"}, ilaw.InvalidArgument, "frame: 'inertial', expected one of: local, global"),
         ({"delassus": "dense"}, ilaw.InvalidArgument, "expected one of: scalar, diagonal, full, transverse"),
         ({"friction\0": 1}, ilaw.InvalidArgument, "has a NUL"),
-        ({"activation": "predictive\0"}, ilaw.InvalidArgument, "has a NUL"),
         ({"dimension": 4}, ilaw.Unsupported, "4"),
         ({"dimension": 2**32 + 3}, ilaw.InvalidArgument, "dimension: 4294967299, expected a whole number"),
     ],
@@ -263,12 +262,6 @@ def test_unaligned_numbers_are_refused():
 def test_parameters_are_refused_with_the_reason(parameters, kind, message):
     with pytest.raises(kind, match=message):
         coulomb(**parameters)
-
-
-def test_a_law_after_a_nul_is_not_cut_off():
-    for name in ("coulomb\0", "coulomb\0.so"):
-        with pytest.raises(ilaw.InvalidArgument, match="has a NUL"):
-            ilaw.Interface(name, friction=0.3)
 
 
 def test_a_step_is_needed():

@@ -1,11 +1,13 @@
 """One solver of coupled contacts as a state machine: drawn sequences of contacts that come, go and change places, warm
-starts, steps that are repeated, refusals, other threads, processes, ranks and problems.
+starts, steps that are repeated, refusals, laws that refuse a contact from some call on, other threads, processes, ranks
+and problems.
 
 A solver keeps its memory and none of the numbers in it. So each solve must have the bits of a new solver, with the
 contacts in another order as well, unless they have the same bodies; and the laws alone, asked at the velocities that
 came out, must answer with the impulses. A sequence that fails is shortened. ILAW_SOLVER_SEED draws others,
 ILAW_SOLVER_SEQUENCES more of them.
 """
+import ctypes
 import os
 import pathlib
 import signal
@@ -18,6 +20,7 @@ import numpy as np
 from ranks import on_two_ranks
 
 import ilaw
+from ilaw import _abi
 from ilaw.coupled import Bodies, Contacts, Solver
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
@@ -59,6 +62,21 @@ class Reorder(typing.NamedTuple):
 
 class Refuse(typing.NamedTuple):
     how: str  # of REFUSALS
+    place: float = 0.0
+
+
+class Rename(typing.NamedTuple):
+    """An interface of this kind with a letter more in one of its texts."""
+    place: float
+    where: float
+    letter: str
+
+
+class Tire(typing.NamedTuple):
+    """The law of a contact refuses it from one of the calls on that a solve makes."""
+    contact: float
+    call: float
+    sweeps: int = 1000
 
 
 class Lattice(typing.NamedTuple):
@@ -80,16 +98,18 @@ class NoNumbers:
         values[:] = np.nan
 
 
-# By a word of the reason. The last two are of bodies and groups, the others of a solve.
+# By a word of the reason. The last three are of bodies and groups, the others of a solve.
 REFUSALS = {"tolerance": {"tolerance": np.nan}, "rounding": {"rounding": np.inf}, "speed": {"speed": -1.0},
-            "exchange": {"exchange": NoNumbers()}, "inverse_mass": {"inverse_mass": np.nan}, "twice": {"twice": True}}
+            "exchange": {"exchange": NoNumbers()}, "inverse_mass": {"inverse_mass": np.nan}, "twice": {"twice": True},
+            "overlaps itself": {"overlaps": True}}
+OUTPUTS = ["impulse", "moment", "state_out", "energy"]
 
 
 class Kind:
     """The contacts that may come, by their numbers, and the velocities with which all begins."""
 
     def __init__(self, name):
-        self.form, laws = KINDS[name]
+        self.name, (self.form, laws) = name, KINDS[name]
         self.laws = [ilaw.Interface(law, delassus=self.form, velocity_step=H, **given) for law, given in laws]
         draw = np.random.default_rng(sum(name.encode()))
         self.rotates = self.form != "scalar"
@@ -217,6 +237,34 @@ class Machine:
     def reorder(self, action):
         np.random.default_rng(action.seed).shuffle(self.order)
 
+    def rename(self, action):
+        """Whatever a text is for, another one is not taken for it."""
+        law, given = KINDS[self.kind.name][1][-1]
+        texts = [law, self.kind.form, "global", *given]
+        at = int(action.place * len(texts))
+        letter = int(action.where * (len(texts[at]) + 1))
+        texts[at] = texts[at][:letter] + action.letter + texts[at][letter:]
+        law, form, frame, *names = texts
+        try:
+            ilaw.Interface(law, delassus=form, frame=frame, velocity_step=H, **dict(zip(names, given.values())))
+        except ilaw.Error:
+            return
+        demand(False, "takes", texts)
+
+    def tire(self, action):
+        if not self.order:
+            return
+        solve = Solve(sweeps=action.sweeps, bad=action.contact)
+        chosen = self.order[int(action.contact * len(self.order))]
+        healthy = Tired(self.kind, chosen, None)
+        self.call(Solver(), self.order, solve._replace(bad=-1.0), law=healthy)
+        tired = Tired(self.kind, chosen, 1 + int(action.call * healthy.calls))
+        found, report = self.call(Solver(), self.order, solve._replace(bad=-1.0), law=tired)
+        if tired.has_refused:
+            demand(report.reason == "too tired", "the reason is", report.reason)
+            self.judge(solve, found, report)
+            self.seen["tired"] = self.seen.get("tired", 0) + 1
+
     def lattice(self, action):
         def solve():
             found = self.grains.solve(self.solver, action.threads)
@@ -275,7 +323,12 @@ class Machine:
             moment = moment if kind.form == "transverse_spin" else None
             groups.append(kind.contacts(law, mine, impulse, moment, state, bad, first))
             chosen.append(mine)
+            if law := options.get("law"):
+                groups[-1]._struct.law = law.instead_of(groups[-1]._struct.law)
+        options.pop("law", None)
         groups += groups[:1] * options.pop("twice", False)
+        if name := options.pop("overlaps", None):
+            getattr(groups[0]._batch, name).node_stride = 0
         before = [[array.copy() for array in outputs(bodies, group)] for group in groups]
         try:
             report = solver.solve(bodies, groups, time=(self.steps + 1) * H, bad_nodes="report",
@@ -387,9 +440,69 @@ class Machine:
     def refuse(self, action):
         if action.how == "exchange" and not self.order:
             return  # ranks without contacts have nothing to agree on
-        found, error = self.call(self.solver, self.order, Solve(), **REFUSALS[action.how])
+        options = REFUSALS[action.how]
+        if action.how == "overlaps itself":
+            law = self.kind.laws[0]
+            outputs = [name for name in OUTPUTS if (name != "moment" or self.kind.form == "transverse_spin")
+                       and (name != "state_out" or law.state_size > 0)]
+            options = {"overlaps": outputs[int(action.place * len(outputs))]}
+            if sum(self.kind.law_of(contact) == 0 for contact in self.order) < 2:
+                return  # nothing to overlap
+        found, error = self.call(self.solver, self.order, Solve(), **options)
         demand(found is None, "not refused:", action.how)
         demand(action.how in str(error), "refused with", error)
+
+
+class Tired:
+    """Laws that count their calls, and refuse a contact from the n-th one on."""
+
+    def __init__(self, kind, contact, n):
+        self.normal, self.n, self.calls, self.has_refused = kind.normal[contact], n, 0, False
+        law = ilaw.describe(KINDS[kind.name][1][kind.law_of(contact)][0])
+        self.holds_bonds = ilaw.Capability.HOLD_BONDS in law.capabilities
+        self.iterates = False  # else all is solved, and is asked for energies or for bonds that break
+        self.kept, self.reason = [], ctypes.c_char_p(b"too tired")
+
+    def instead_of(self, pointer):
+        law = _abi.law.from_buffer_copy(pointer[0])
+        usual = type(law.evaluate)(ctypes.cast(law.evaluate, ctypes.c_void_p).value)  # a member that is read is a reference
+
+        def evaluate(instance, batch, report):
+            code, batch = usual(instance, batch, report), batch[0]
+            self.calls += 1
+            index = ctypes.cast(batch.index, ctypes.POINTER(ctypes.c_int32))
+            nodes = index[:batch.node_count] if index else range(batch.node_count)
+            if not index:  # those with an index ask for the broken ones among the last nodes
+                self.iterates = not batch.energy.values and bool(batch.flags or not self.holds_bonds)
+            for node in nodes if self.n is not None and self.calls >= self.n else []:
+                if any(at(batch.normal, node, c) != self.normal[c] for c in range(3)):
+                    continue
+                for output in (batch.impulse, batch.moment):
+                    for c in range(3 if output.values else 0):
+                        put(output, node, c, 0.0)
+                ctypes.cast(batch.status, ctypes.POINTER(ctypes.c_uint8))[node * batch.status_stride] = ilaw.Status.BAD_INPUT
+                report[0].bad_count, report[0].first_bad_node, report[0].reason = 1, node, self.reason
+                code, self.has_refused = _abi.Code.BAD_NODES, self.has_refused or self.iterates
+            return code
+
+        law.evaluate = type(usual)(evaluate)
+        self.kept.append(law)
+        return ctypes.pointer(law)
+
+
+def place_of(array, node, component):
+    number = node * array.node_stride + component * array.component_stride
+    return ctypes.cast(array.values, ctypes.POINTER(ctypes.c_double)), number
+
+
+def at(array, node, component):
+    values, k = place_of(array, node, component)
+    return values[k]
+
+
+def put(array, node, component, value):
+    values, k = place_of(array, node, component)
+    values[k] = value
 
 
 def moment_of(group, k):
@@ -404,7 +517,8 @@ def outputs(bodies, group):
 
 
 def drawn_action(draw):
-    kind = draw.choices(["solve", "add", "remove", "reorder", "refuse", "lattice"], [10, 8, 3, 2, 1, 1])[0]
+    kind = draw.choices(["solve", "add", "remove", "reorder", "refuse", "rename", "tire", "lattice"],
+                        [10, 8, 3, 2, 1, 1, 2, 1])[0]
     if kind == "solve":
         return Solve(draw.choices(["", "thread", "child", "both"], [6, 2, 1, 2])[0], draw.choice([1000, 1000, 3, 40]),
                      draw.random() < 0.7, draw.random() < 0.7, draw.random() if draw.random() < 0.1 else -1.0)
@@ -412,7 +526,9 @@ def drawn_action(draw):
         return Lattice(draw.choice([1, 2, 3, 5]), draw.choice(["", "", "thread", "child"]))
     return {"add": lambda: Add(draw.randrange(CANDIDATES)), "remove": lambda: Remove(draw.random()),
             "reorder": lambda: Reorder(draw.randrange(1000)),
-            "refuse": lambda: Refuse(draw.choice(sorted(REFUSALS)))}[kind]()
+            "rename": lambda: Rename(draw.random(), draw.choice([0.0, draw.random(), 0.999]), draw.choice("\0\0 /.x")),
+            "tire": lambda: Tire(draw.random(), draw.random(), draw.choice([1000, 40, 12])),
+            "refuse": lambda: Refuse(draw.choice(sorted(REFUSALS)), draw.random())}[kind]()
 
 
 def plainer(action):
@@ -444,4 +560,4 @@ def test_a_solver_gives_what_a_new_one_gives():
     grains, seen = Grains(), {}
     sequence, why = search(SEED, SEQUENCES, drawn_sequence, lambda drawn: failure_of(drawn, grains, seen), plainer)
     assert not sequence, f"seed {SEED}: {why}\n" + "\n".join(map(str, sequence))
-    assert seen["judged"] > SEQUENCES and seen["on ranks"] > SEQUENCES / 2
+    assert seen["judged"] > SEQUENCES and seen["on ranks"] > SEQUENCES / 2 and seen["tired"] > SEQUENCES / 4

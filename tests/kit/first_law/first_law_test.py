@@ -86,7 +86,8 @@ class FirstLawPage(unittest.TestCase):
     def test_lists_all_names(self):
         """Every name that law_checks.hpp knows, on the page and at the top of law.hpp."""
         kit, page = ROOT / "api/include/ilaw/kit", PAGE.read_text()
-        names = re.findall(r"ILAW_KIT_NAME\((?!wrong)(\w+)\);", (kit / "detail/law_checks.hpp").read_text())
+        known = (kit / "detail/law_checks.hpp").read_text().split("// Names that the kit would pass over")[0]
+        names = re.findall(r"ILAW_KIT_NAME\((\w+)\);", known)
         top = set(re.findall(r"\w+", (kit / "law.hpp").read_text().split("#pragma once")[0]))
         self.assertGreater(len(names), 20)
         self.assertEqual([name for name in names if f"`{name}`" not in page or name not in top], [])

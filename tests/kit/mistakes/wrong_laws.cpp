@@ -76,7 +76,7 @@ WRONG(state_with_double)
                                                               {.member = &state::count, .name = "count"}};
 };
 
-// a member of struct state is a V, a vector<V> or a tangential_vector<V>
+// the members of struct state must be V, vector<V> or tangential_vector<V>
 WRONG(described_int)
   STEP
   struct state {
@@ -246,7 +246,7 @@ WRONG(mutable_initialise)
   void initialise(Node&) {}
 };
 
-// stable_velocity_step must be V stable_velocity_step(V h_n, V h_t) const, or template <class Node> V stable_velocity_step(const Node& node) const
+// stable_velocity_step must be template <class Node> V stable_velocity_step(const Node& node) const
 WRONG(stable_step_of_nothing)
   STEP
   V stable_velocity_step() const { return a; }

@@ -23,9 +23,7 @@
 //         conflict()                         why parameters do not go together, or null
 //         inputs(), capabilities(), permissions()   with these parameters (default: the card's)
 //         tells_tangents_apart()             whether these parameters need a tangent per node in the host's axes
-//         stable_velocity_step(node)         the largest stable step; or of (h_N, h_T), where it falls with both
-//                                            and depends on nothing else; or both, the second NaN where the
-//                                            first is meant
+//         stable_velocity_step(node)         the largest stable step, 2/w of a spring of frequency w
 //         window(), adds_to_window(status), clears_window(status)   of a history (window.hpp)
 //         extension(name)                    see ilaw_law
 // clang-format on
@@ -347,11 +345,6 @@ class state_member {
         kind_(component == &vector<double>::n ? ILAW_KIND_SCALAR : ILAW_KIND_HISTORY) {}
   constexpr state_member(tangential_vector<double> State::*member)
       : tangential_(member), kind_(ILAW_KIND_TANGENTIAL) {}
-  template <class Other>
-  constexpr state_member(Other State::*) {
-    static_assert(std::is_same_v<Other, double>,
-                  "a member of struct state is a V, a vector<V> or a tangential_vector<V>");
-  }
 
   constexpr bool is_given() const { return scalar_ || vector_ || tangential_; }
   constexpr std::uint32_t kind() const { return kind_; }

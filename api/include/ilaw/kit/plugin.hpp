@@ -3,7 +3,7 @@
 #pragma once
 
 #if defined(ILAW_KIT_DEVICE)
-#include <ilaw/kit/device/kernel.hpp>
+#include <ilaw/device/kernel.hpp>
 #else
 
 #ifndef ILAW_BUILDING_PLUGIN
@@ -13,7 +13,7 @@
 #include <ilaw/kit/detail/evaluate.hpp>
 #include <ilaw/kit/detail/law_checks.hpp>
 #if defined(ILAW_HAS_PTX) || defined(ILAW_HAS_SPIRV)
-#include <ilaw/kit/device/extension.hpp>
+#include <ilaw/device/extension.hpp>
 #endif
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {

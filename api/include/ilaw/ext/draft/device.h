@@ -29,18 +29,16 @@ typedef struct ilaw_device_findings {
   uint32_t struct_size;
   uint32_t reserved; /* 0 */
   uint8_t* reasons;  /* node_count codes: why a node is bad; 0 of good ones */
-  double* limits;    /* 3 node_count: numbers of the stable step */
+  double* stable_steps; /* node_count; infinity of nodes that limit no step */
 } ilaw_device_findings;
 
-/* The same of a whole batch. The stable step follows from the smallest of the first of the limits and the
- * largest of the second and of the third. */
+/* The same of a whole batch. */
 typedef struct ilaw_device_totals {
   uint32_t struct_size;
   uint32_t reason; /* of the first bad node */
   int64_t bad_count;
   int64_t first_bad_node; /* -1 when none */
-  double limits[3];       /* infinity, 0, 0 where they were not asked for */
-  double time;            /* of the batch */
+  double stable_step;     /* the smallest; infinity where they were not asked for */
 } ilaw_device_totals;
 
 typedef struct ilaw_device_law {

@@ -129,67 +129,17 @@ template <class Wide, class Law, class View>
 
 // ---- what few laws give beside impulse, state and energy
 
-template <class V>
-struct step_limit {
-  V least = infinity, most_normal = 0.0, most_tangential = 0.0;
-  bool is_by_node = false;
-};
-
-// Where it depends on H alone and falls with either entry, the largest entries of all nodes decide.
-template <class Law>
-concept is_limited_by_delassus = requires(const Law& law) {
-  law.stable_velocity_step(1.0, 1.0);
-};
-template <class Law>
-void add_limit_of_delassus(const Law& law, tally& all) {
-  if constexpr (is_limited_by_delassus<Law>)
-    if (all.most_normal > 0.0)
-      all.stable_velocity_step =
-          smaller(law.stable_velocity_step(all.most_normal, all.most_tangential), all.stable_velocity_step);
+// The smallest stable step of the good nodes.
+template <class Law, class Node, class V>
+ILAW_KIT_INLINE void add_stable_step(V& least, const Law& law, const Node& n, mask_of<V> good) {
+  if constexpr (requires { law.stable_velocity_step(n); })
+    least = smaller(select(good, law.stable_velocity_step(n), V(infinity)), least);
 }
-
-// Law: L<double>; Wide: L<V>.
-template <class Law, class Wide, class Node, class V = typename Node::number>
-struct stable_step {
-  static constexpr bool by_delassus = is_limited_by_delassus<Law>;
-  static constexpr bool by_node = requires(const Wide& law, const Node& n) { law.stable_velocity_step(n); };
-
-  // Where both forms are given, the one of the node counts where the other gives NaN, and for parameters per
-  // node (varying).
-  ILAW_KIT_INLINE static void add(step_limit<V>& found, const Wide& law, const Node& n, bool varying,
-                                  mask_of<V> good) {
-    if constexpr (by_node)
-      if (!by_delassus || found.is_by_node) {
-        found.least = smaller(select(good, law.stable_velocity_step(n), V(infinity)), found.least);
-        return;
-      }
-    if constexpr (by_delassus) {
-      const V normal = n.delassus.normal(), tangential = n.delassus.largest_tangential();
-      if (varying) {
-        found.least =
-            smaller(select(good, law.stable_velocity_step(normal, tangential), V(infinity)), found.least);
-      } else {
-        found.most_normal = larger(zero_unless(good, normal), found.most_normal);
-        found.most_tangential = larger(zero_unless(good, tangential), found.most_tangential);
-      }
-    }
-  }
-  static step_limit<V> start(const Law& law, bool varying) {
-    step_limit<V> made;
-    if constexpr (by_delassus && by_node) {
-      const double step = law.stable_velocity_step(1.0, 1.0);
-      made.is_by_node = varying || step != step;
-    }
-    return made;
-  }
-  static void collect(const step_limit<V>& found, tally& all) {
-    for (int k = 0; k < lanes_of<V>; ++k) {
-      all.stable_velocity_step = smaller(lane_of(found.least, k), all.stable_velocity_step);
-      all.most_normal = larger(lane_of(found.most_normal, k), all.most_normal);
-      all.most_tangential = larger(lane_of(found.most_tangential, k), all.most_tangential);
-    }
-  }
-};
+template <class V>
+void collect_stable_step(V least, tally& all) {
+  for (int k = 0; k < lanes_of<V>; ++k)
+    all.stable_velocity_step = smaller(lane_of(least, k), all.stable_velocity_step);
+}
 
 // Heat and wear of a step. friction is what it dissipated, so that friction/|r_T| is the mean speed of slip
 // where friction alone gives r_T (is_free: of bonds). Apart from the loop, which rarely needs it. first: the
@@ -223,8 +173,6 @@ struct kernel {
   static constexpr bool spins = has_spins<node_type>;
   using view_type = View;
   using mask = mask_of<V>;
-  using limit = step_limit<V>;
-  using steps = stable_step<Law, Wide, node_type>;
   static constexpr bool careful = lanes_of<V> == 1;
   using checks_type = checks<V, careful>;
   static constexpr bool is_projected = std::is_same_v<frame_type, normal_frame<V>>;
@@ -611,7 +559,7 @@ struct kernel {
 
   // One pack. False: it has a bad node and was not written.
   ILAW_KIT_INLINE static bool run_pack(const Wide& law, const prepared_t<Wide>& prepared, const view_type& b,
-                                       std::int64_t i, checks_type c, tally& found, limit& limits) {
+                                       std::int64_t i, checks_type c, tally& found, V& stable_step) {
     loaded p = load_pack(prepared, b, i, c);
     take_state(p.node, b, i, c);
     const status_of<V> status = law.step(p.node);
@@ -621,7 +569,7 @@ struct kernel {
       if (any(bad)) [[unlikely]]
         return false;
     store_pack(law, p, b, i, status, !bad);
-    steps::add(limits, law, p.node, b.varying, !bad);
+    add_stable_step(stable_step, law, p.node, !bad);
     if constexpr (careful) add_bad(found, c, i);
     return true;
   }
@@ -632,7 +580,7 @@ struct kernel {
     auto& found = *static_cast<tally*>(findings);
     std::int64_t i = 0;
     if constexpr (!ILAW_KIT_IS_SPARE) {
-      limit limits = steps::start(given, b.varying);
+      V stable_step = infinity;
       Wide law = broadcast<V>(given);
       auto prepared = kit::prepared(law, b.step);
       const int is_special = b.varying + b.in_memory;
@@ -640,13 +588,12 @@ struct kernel {
         bool is_usual = true;
         if (is_special) [[unlikely]]
           is_usual = get_ready(law, prepared, given, b, i);
-        if (!is_usual || !run_pack(law, prepared, b, i, checks_type(), found, limits)) [[unlikely]]
+        if (!is_usual || !run_pack(law, prepared, b, i, checks_type(), found, stable_step)) [[unlikely]]
           b.careful(opaque, view, i, width, &found, nullptr);
       }
-      steps::collect(limits, found);
+      collect_stable_step(stable_step, found);
     }
     if (i < b.count) b.careful(opaque, view, i, b.count - i, &found, nullptr);
-    add_limit_of_delassus(given, found);
   }
   // A careful_function.
   [[gnu::noinline, gnu::cold, gnu::flatten]] static void run_nodes(const void* opaque, const void* view,
@@ -663,13 +610,13 @@ struct kernel {
     auto& found = *static_cast<tally*>(findings);
     Wide law = broadcast<V>(given);
     auto prepared = kit::prepared(law, b.step);
-    limit limits = steps::start(given, b.varying);
+    V stable_step = infinity;
     for (std::int64_t i = first; i < first + count; ++i) {
       checks_type c;
       if (b.varying) c.require(take_own(law, prepared, given, b, i), reason_parameter);
-      Kernel::run_pack(law, prepared, b, i, c, found, limits, own...);
+      Kernel::run_pack(law, prepared, b, i, c, found, stable_step, own...);
     }
-    steps::collect(limits, found);
+    collect_stable_step(stable_step, found);
   }
 
   // ---- before a pack

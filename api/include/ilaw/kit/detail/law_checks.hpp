@@ -33,14 +33,11 @@ ILAW_KIT_NAME(prepare); ILAW_KIT_NAME(initialise); ILAW_KIT_NAME(conflict); ILAW
 ILAW_KIT_NAME(capabilities); ILAW_KIT_NAME(permissions); ILAW_KIT_NAME(tells_tangents_apart);
 ILAW_KIT_NAME(stable_velocity_step); ILAW_KIT_NAME(window); ILAW_KIT_NAME(adds_to_window); ILAW_KIT_NAME(clears_window);
 ILAW_KIT_NAME(extension);
-
-// Names that the kit would pass over, and what they stand for.
-#define ILAW_KIT_MISSPELLINGS(f) \
-  f(initialize, "'initialise'") f(init, "'initialise'") f(prepared, "'prepare'") \
-  f(stable_step, "'stable_velocity_step'") f(is_isotropic, ".is_isotropic = true in the card")
+// Names that the kit would pass over.
+ILAW_KIT_NAME(initialize); ILAW_KIT_NAME(init); ILAW_KIT_NAME(prepared); ILAW_KIT_NAME(stable_step);
+ILAW_KIT_NAME(is_isotropic);
 // clang-format on
-#define ILAW_KIT_MISSPELLED(wrong, right) ILAW_KIT_NAME(wrong);
-ILAW_KIT_MISSPELLINGS(ILAW_KIT_MISSPELLED)
+#undef ILAW_KIT_NAME
 
 // ---- entries of a law's tables
 
@@ -62,8 +59,7 @@ constexpr bool differ(const auto& entries, auto place) {
 }
 template <class Law>
 constexpr bool is_axis(std::string_view name) {
-  return name == "time" ||
-         !all_of(Law::parameters, [&](const auto& p) { return !p.is_field || name != p.name; });
+  return name == "time" || !all_of(Law::parameters, [&](auto& p) { return !p.is_field || name != p.name; });
 }
 
 // Structs whose members are V and nothing else grow as V does.
@@ -99,13 +95,12 @@ concept solves = requires(const Law& law, const typename Law::problem& p, typena
 
 // ---- the checks
 
-// The line that says what to write unless a condition holds.
-#define ILAW_KIT_CHECK(text, ...)            \
-  {                                          \
-    constexpr bool is_right = (__VA_ARGS__); \
-    static_assert(is_right, text);           \
-    passes = passes && is_right;             \
-  }
+// The line that says what to write unless a condition holds. The next check is compiled only if it does.
+#define ILAW_KIT_CHECK(text, ...)      \
+  if constexpr (!(__VA_ARGS__)) {      \
+    static_assert(!sizeof(Law), text); \
+    return false;                      \
+  } else
 // A function that a law need not have; signature: how to write it.
 #define ILAW_KIT_FUNCTION(name, signature, ...)                                                           \
   ILAW_KIT_CHECK(                                                                                         \
@@ -114,10 +109,74 @@ concept solves = requires(const Law& law, const typename Law::problem& p, typena
 #define ILAW_KIT_SPELLED(wrong, right) \
   ILAW_KIT_CHECK("the kit calls no '" #wrong "': write " right, !names_##wrong<Law>)
 
+template <class Law, class Vector, class H>
+constexpr bool passes_node() {
+  using Wide = law_on_t<Law, pack>;
+  using Node = node<Wide, Vector, H>;
+  constexpr bool steps = calls_step<Wide, Node&>, asks = calls_ask<Wide, Node&>;
+  ILAW_KIT_CHECK("no step or ask takes the nodes of a form of H that .delassus_forms of the card names",
+                 steps || asks)
+  ILAW_KIT_CHECK("step must be template <class Node> status_of<V> step(Node& node) const",
+                 !steps || fits_step<Wide, Node>)
+  ILAW_KIT_CHECK("ask must be template <class Node> asked<V> ask(Node& node, problem& open) const",
+                 !asks || fits_ask<Wide, Node>)
+  ILAW_KIT_CHECK(
+      "finish must be template <class Node> status_of<V> finish(Node& node, const answer& a) const",
+      !asks || fits_finish<Wide, Node>)
+  ILAW_KIT_CHECK("step and ask take the same nodes: bool asks() const says which parameters need ask",
+                 !(steps && asks) || names_asks<Law>)
+  ILAW_KIT_CHECK(
+      "stable_velocity_step must be template <class Node> V stable_velocity_step(const Node& node) const",
+      !names_stable_velocity_step<Law> ||
+          requires(const Wide& law, const Node& node) { law.stable_velocity_step(node); })
+  return true;
+}
+// One kind after the other, so that a mistake is said once.
+template <class Law, class H, bool Serves>
+constexpr bool passes_nodes() {
+  if constexpr (!Serves)
+    return true;
+  else if constexpr (!needs_no_tangents<Law> || std::is_same_v<H, full<pack>>)
+    return passes_node<Law, vector<pack>, H>();
+  else if constexpr (passes_node<Law, vector<pack>, H>())
+    return passes_node<Law, projected<pack>, H>();
+  else
+    return false;
+}
+
 template <class Law>
-constexpr bool passes_names() {
-  bool passes = true;
-  ILAW_KIT_MISSPELLINGS(ILAW_KIT_SPELLED)
+constexpr bool passes_state() {
+  return true;
+}
+template <has_state Law>
+constexpr bool passes_state() {
+  ILAW_KIT_CHECK("the members of struct state must be V, vector<V> or tangential_vector<V>",
+                 all_of_V<typename law_on_t<Law, pack>::state, typename law_on_t<Law, pack_of<2>>::state>)
+  ILAW_KIT_CHECK("a state variable needs .member = &state::name and .name = \"name\"",
+                 all_of(Law::state_variables, [](auto& v) { return v.member.is_given() && v.name; }))
+  ILAW_KIT_CHECK(
+      "every member of struct state needs an entry of state_variables[]",
+      sum_of(Law::state_variables, [](auto& v) { return v.member.numbers(); }) == state_numbers<Law>)
+  ILAW_KIT_CHECK("two state variables have the same .member: each needs one of its own",
+                 differ(Law::state_variables, [](auto& v) { return v.member.place(); }))
+  return true;
+}
+
+// Whether a struct is a law; an error of one line where it is not.
+template <template <class> class L>
+constexpr bool checked() {
+  using Law = L<double>;
+  using Wide = L<pack>;
+  using Two = L<pack_of<2>>;
+  constexpr int parts = names_problem<Law> + names_answer<Law> + names_ask<Law> + names_solve<Law> +
+                        names_solve_scalar<Law> + names_finish<Law>;
+  constexpr bool has_any_history =
+      names_history<Law> || names_window<Law> || names_adds_to_window<Law> || names_clears_window<Law>;
+  ILAW_KIT_SPELLED(initialize, "'initialise'")
+  ILAW_KIT_SPELLED(init, "'initialise'")
+  ILAW_KIT_SPELLED(prepared, "'prepare'")
+  ILAW_KIT_SPELLED(stable_step, "'stable_velocity_step'")
+  ILAW_KIT_SPELLED(is_isotropic, ".is_isotropic = true in the card")
   ILAW_KIT_CHECK(
       "a law needs static constexpr law_card card{.id = ..., .title = ..., .doc = ...}",
       requires { requires std::is_same_v<decltype(Law::card), const law_card>; })
@@ -130,31 +189,19 @@ constexpr bool passes_names() {
                  names_step<Law> || names_ask<Law>)
   ILAW_KIT_CHECK("a memory is struct state and static constexpr state_variable<state> state_variables[]",
                  names_state<Law> == names_state_variables<Law>)
-  constexpr int parts = names_problem<Law> + names_answer<Law> + names_ask<Law> + names_solve<Law> +
-                        names_solve_scalar<Law> + names_finish<Law>;
   ILAW_KIT_CHECK("a solver is problem, answer, ask, solve, solve_scalar and finish: one of them is missing",
                  parts == 0 || parts == 6)
   ILAW_KIT_CHECK("asks chooses between step and ask: the law has one of them alone",
                  !names_asks<Law> || (names_step<Law> && names_ask<Law>))
-  return passes;
-}
-
-// Law: L<double>.
-template <class Law>
-constexpr bool passes_members() {
-  bool passes = true;
-  using Wide = law_on_t<Law, pack>;
-  using Two = law_on_t<Law, pack_of<2>>;
-  constexpr std::uint32_t forms = Law::card.delassus_forms;
-
   ILAW_KIT_CHECK("the card of a law needs .id, .title and .doc",
                  Law::card.id && Law::card.title && Law::card.doc)
-  ILAW_KIT_CHECK("a card that serves a diagonal H serves a full one, too: in the host's axes it is full",
-                 !(forms & ILAW_DELASSUS_DIAGONAL) || (forms & ILAW_DELASSUS_FULL))
+  ILAW_KIT_CHECK(
+      "a card that serves a diagonal H serves a full one, too: in the host's axes it is full",
+      !(Law::card.delassus_forms & ILAW_DELASSUS_DIAGONAL) || (Law::card.delassus_forms & ILAW_DELASSUS_FULL))
   ILAW_KIT_CHECK("a parameter needs .member = &Law::name and .name = \"name\"",
-                 all_of(Law::parameters, [](const auto& p) { return p.member.is_given() && p.name; }))
+                 all_of(Law::parameters, [](auto& p) { return p.member.is_given() && p.name; }))
   ILAW_KIT_CHECK("two parameters have the same .member: each needs one of its own",
-                 differ(Wide::parameters, [](const auto& p) { return p.member; }))
+                 differ(Wide::parameters, [](auto& p) { return p.member; }))
   ILAW_KIT_CHECK("a law's members are its parameters, V, double or grid: each needs an entry of parameters[]",
                  sizeof(Law) == sizeof(double) * std::size(Law::parameters))
   ILAW_KIT_CHECK("a law has at most 32 parameters and eight amounts",
@@ -163,37 +210,13 @@ constexpr bool passes_members() {
                  !serves_spins<Law> || (reads<Law>(reads_v_previous) && !has_window<Law> &&
                                         (Law::card.dimensions & ILAW_DIMENSION_3)))
   ILAW_KIT_CHECK("a choice or whole number is the same at all nodes: its member is a double, not a V",
-                 all_of(Wide::parameters, [](const auto& p) {
-                   return !(p.choices.count > 0 || p.whole) || !p.member.may_vary();
-                 }))
-  ILAW_KIT_CHECK("a field differs from node to node: its member is a V",
-                 all_of(Wide::parameters, [](const auto& p) { return !p.is_field || p.member.may_vary(); }))
-  ILAW_KIT_CHECK("a table is over \"time\" or a field, a parameter with .is_field = true",
                  all_of(Wide::parameters,
-                        [](const auto& p) { return p.member.is_grid() || all_of(p.axes, is_axis<Law>); }))
-  if constexpr (has_state<Law>) {
-    constexpr bool is_of_V = all_of_V<typename Wide::state, typename Two::state>;
-    constexpr bool is_given =
-        all_of(Law::state_variables, [](const auto& v) { return v.member.is_given() && v.name; });
-    ILAW_KIT_CHECK("the members of struct state must be V, vector<V> or tangential_vector<V>", is_of_V)
-    ILAW_KIT_CHECK("a state variable needs .member = &state::name and .name = \"name\"", is_given)
-    if constexpr (is_of_V && is_given) {
-      constexpr int numbers = sum_of(Law::state_variables, [](const auto& v) { return v.member.numbers(); });
-      ILAW_KIT_CHECK("every member of struct state needs an entry of state_variables[]",
-                     numbers == state_numbers<Law>)
-      ILAW_KIT_CHECK("two state variables have the same .member: each needs one of its own",
-                     differ(Law::state_variables, [](const auto& v) { return v.member.place(); }))
-    }
-  }
-  if constexpr (names_ask<Law>) {
-    ILAW_KIT_CHECK("the members of problem and answer must all be of type V",
-                   all_of_V<typename Wide::problem, typename Two::problem> &&
-                       all_of_V<typename Wide::answer, typename Two::answer>)
-    ILAW_KIT_CHECK(
-        "solve must be mask_of<V> solve(const problem& p, answer& a) const, and solve_scalar the same without "
-        "result; both may take what prepare gave as well",
-        solves<Law> || solves<Law, prepared_t<Law>>)
-  }
+                        [](auto& p) { return !(p.choices.count > 0 || p.whole) || !p.member.may_vary(); }))
+  ILAW_KIT_CHECK("a field differs from node to node: its member is a V",
+                 all_of(Wide::parameters, [](auto& p) { return !p.is_field || p.member.may_vary(); }))
+  ILAW_KIT_CHECK(
+      "a table is over \"time\" or a field, a parameter with .is_field = true",
+      all_of(Wide::parameters, [](auto& p) { return p.member.is_grid() || all_of(p.axes, is_axis<Law>); }))
   ILAW_KIT_CHECK("asks must be bool asks() const or bool asks(bool is_transverse) const",
                  !names_asks<Law> || can_be_asked<Law>)
   ILAW_KIT_FUNCTION(conflict, "const char* conflict() const", { law.conflict() } -> std::same_as<const char*>)
@@ -209,74 +232,27 @@ constexpr bool passes_members() {
                     law.initialise(node))
   ILAW_KIT_FUNCTION(extension, "static const void* extension(const char* name)",
                     { Law::extension("") } -> std::same_as<const void*>)
-  constexpr bool has_any_history =
-      names_history<Law> || names_window<Law> || names_adds_to_window<Law> || names_clears_window<Law>;
   ILAW_KIT_CHECK(
       "a history is static constexpr history_card history and window() const with static bool "
       "adds_to_window(ilaw_status) and clears_window(ilaw_status)",
       !has_any_history || has_window<Law>)
-  return passes;
-}
-
-// Checks of the calls with nodes, which need valid names and members.
-template <class Law, class Node>
-constexpr bool passes_node() {
-  bool passes = true;
-  using Wide = law_on_t<Law, pack>;
-  constexpr bool steps = calls_step<Wide, Node&>, asks = calls_ask<Wide, Node&>;
-  ILAW_KIT_CHECK("no step or ask takes the nodes of a form of H that .delassus_forms of the card names",
-                 steps || asks)
-  ILAW_KIT_CHECK("step must be template <class Node> status_of<V> step(Node& node) const",
-                 !steps || fits_step<Wide, Node>)
-  ILAW_KIT_CHECK("ask must be template <class Node> asked<V> ask(Node& node, problem& open) const",
-                 !asks || fits_ask<Wide, Node>)
   ILAW_KIT_CHECK(
-      "finish must be template <class Node> status_of<V> finish(Node& node, const answer& a) const",
-      !asks || fits_finish<Wide, Node>)
-  ILAW_KIT_CHECK("step and ask take the same nodes: bool asks() const says which parameters need ask",
-                 !(steps && asks) || names_asks<Law>)
+      "the members of problem and answer must all be of type V", !names_ask<Law> || requires {
+        requires all_of_V<typename Wide::problem, typename Two::problem>;
+        requires all_of_V<typename Wide::answer, typename Two::answer>;
+      })
   ILAW_KIT_CHECK(
-      "stable_velocity_step must be V stable_velocity_step(V h_n, V h_t) const, or template <class Node> V "
-      "stable_velocity_step(const Node& node) const",
-      !names_stable_velocity_step<Law> || is_limited_by_delassus<Law> ||
-          requires(const Wide& law, const Node& node) { law.stable_velocity_step(node); })
-  return passes;
-}
-// The kinds of nodes that a law serves, one after the other, so that a mistake is said once. void: not
-// served.
-template <class Law, class Node, class... More>
-constexpr bool pass_nodes() {
-  if constexpr (!std::is_void_v<Node>)
-    if constexpr (!passes_node<Law, Node>()) return false;
-  if constexpr (sizeof...(More) > 0) return pass_nodes<Law, More...>();
-  return true;
-}
-template <bool Serves, class Law, class Vector, class H>
-using node_if = std::conditional_t<Serves, node<law_on_t<Law, pack>, Vector, H>, void>;
-template <class Law>
-constexpr bool passes_nodes() {
-  constexpr bool of_normal = serves_transverse<Law> && needs_no_tangents<Law>,
-                 spins_of_normal = serves_spins<Law> && needs_no_tangents<Law>;
-  return pass_nodes<Law, node_if<serves_transverse<Law>, Law, vector<pack>, transverse<pack>>,
-                    node_if<of_normal, Law, projected<pack>, transverse<pack>>,
-                    node_if<serves_full<Law>, Law, vector<pack>, full<pack>>,
-                    node_if<serves_spins<Law>, Law, vector<pack>, transverse_spin<pack>>,
-                    node_if<spins_of_normal, Law, projected<pack>, transverse_spin<pack>>>();
-}
-#undef ILAW_KIT_NAME
-#undef ILAW_KIT_MISSPELLINGS
-#undef ILAW_KIT_MISSPELLED
-#undef ILAW_KIT_SPELLED
-#undef ILAW_KIT_CHECK
-#undef ILAW_KIT_FUNCTION
-
-// Whether a struct is a law; an error of one line where it is not.
-template <template <class> class L>
-constexpr bool checked() {
-  using Law = L<double>;
-  if constexpr (passes_names<Law>())
-    if constexpr (passes_members<Law>()) return passes_nodes<Law>();
+      "solve must be mask_of<V> solve(const problem& p, answer& a) const, and solve_scalar the same without "
+      "result; both may take what prepare gave as well",
+      !names_ask<Law> || solves<Law> || solves<Law, prepared_t<Law>>)
+  if constexpr (passes_state<Law>())
+    if constexpr (passes_nodes<Law, transverse<pack>, serves_transverse<Law>>())
+      if constexpr (passes_nodes<Law, full<pack>, serves_full<Law>>())
+        return passes_nodes<Law, transverse_spin<pack>, serves_spins<Law>>();
   return false;
 }
+#undef ILAW_KIT_CHECK
+#undef ILAW_KIT_FUNCTION
+#undef ILAW_KIT_SPELLED
 
 }  // namespace ilaw::kit::detail

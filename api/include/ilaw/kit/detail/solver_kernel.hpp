@@ -212,7 +212,6 @@ struct solver_kernel : kernel<Law, V, View, Frame, Delassus> {
   using base::careful;
   using base::width;
   using typename base::checks_type;
-  using typename base::limit;
   using typename base::loaded;
   using typename base::mask;
   using typename base::node_type;
@@ -241,7 +240,7 @@ struct solver_kernel : kernel<Law, V, View, Frame, Delassus> {
 
   // One pack, asked for its problems or, where finishing, with the answers to them. False: it has a bad node.
   ILAW_KIT_INLINE static bool run_pack(const Wide& law, const prepared_t<Wide>& prepared, const view_type& b,
-                                       std::int64_t i, checks_type c, tally& found, limit& limits,
+                                       std::int64_t i, checks_type c, tally& found, V& stable_step,
                                        problems_type& all, const pass& at) {
     loaded p = base::load_pack(prepared, b, i, c, at.finishing && !careful);
     base::take_state(p.node, b, i, c);
@@ -282,7 +281,7 @@ struct solver_kernel : kernel<Law, V, View, Frame, Delassus> {
       all.state[at.k] = pack_state::stored;
     }
     base::store_pack(law, p, b, i, status, !bad);
-    base::steps::add(limits, law, p.node, b.varying, !bad);
+    add_stable_step(stable_step, law, p.node, !bad);
     if constexpr (careful) base::add_bad(found, c, i);
     return true;
   }
@@ -327,7 +326,7 @@ struct solver_kernel : kernel<Law, V, View, Frame, Delassus> {
     auto& found = *static_cast<tally*>(findings);
     [[maybe_unused]] Wide law = broadcast<V>(given);
     [[maybe_unused]] auto prepared = kit::prepared(law, b.step);
-    limit limits = base::steps::start(given, b.varying);
+    V stable_step = infinity;
     problems_type all;
     for (int c = 0; c < parameter_count<Law>; ++c)
       if (b.varies(c)) all.varying |= std::uint64_t{1} << c;
@@ -343,7 +342,7 @@ struct solver_kernel : kernel<Law, V, View, Frame, Delassus> {
             bool is_usual = i + width <= end && !(at.finishing && all.state[at.k] == pack_state::careful);
             if (is_usual && b.varying + b.in_memory) [[unlikely]]
               is_usual = base::get_ready(law, prepared, given, b, i);
-            is_done = is_usual && run_pack(law, prepared, b, i, checks_type(), found, limits, all, at);
+            is_done = is_usual && run_pack(law, prepared, b, i, checks_type(), found, stable_step, all, at);
           }
           if (!is_done) [[unlikely]] {
             all.at = at;
@@ -356,8 +355,7 @@ struct solver_kernel : kernel<Law, V, View, Frame, Delassus> {
         if (all.count > 0) found.by_scalar_fallback += all.solve(given, b.step, b.scalar);
       }
     }
-    base::steps::collect(limits, found);
-    add_limit_of_delassus(given, found);
+    collect_stable_step(stable_step, found);
   }
 };
 

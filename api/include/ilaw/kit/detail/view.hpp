@@ -142,7 +142,6 @@ struct tally {
   std::int64_t bad_count = 0, first_bad_node = -1, by_scalar_fallback = 0;
   int reason = no_reason;
   double stable_velocity_step = infinity;
-  double most_normal = 0.0, most_tangential = 0.0;  // entries of H, of laws whose step follows from these
 };
 
 // For doubles only, as floats lose by it: how many nodes ahead a loop prefetches arrays that no cache holds,

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/device/arguments.hpp>
+#include <ilaw/device/arguments.hpp>
 #include <ilaw/kit/node.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
@@ -125,7 +125,7 @@ ILAW_KIT_INLINE void solve_node(const Law& law, const Wide& wide, const step_siz
 template <class Solver, class Law, class Wide, class View>
 ILAW_KIT_INLINE void solve_and_step_node(const Law& law, const Wide& wide, const View& b,
                                          typename Solver::checks_type c, tally& found,
-                                         typename Solver::limit& limits) {
+                                         pack_of_one& stable_step) {
   const auto prepared = kit::prepared(wide, b.step);
   auto p = Solver::load_pack(prepared, b, 0, c);
   Solver::take_state(p.node, b, 0, c);
@@ -141,7 +141,7 @@ ILAW_KIT_INLINE void solve_and_step_node(const Law& law, const Wide& wide, const
   }
   Solver::check_result(p.node, b, c);
   Solver::store_pack(wide, p, b, 0, status, !c.bad());
-  Solver::steps::add(limits, wide, p.node, b.varying, !c.bad());
+  add_stable_step(stable_step, wide, p.node, !c.bad());
   Solver::add_bad(found, c, 0);
 }
 
@@ -162,18 +162,14 @@ ILAW_KIT_INLINE void run_node(const device_arguments<Law>& a, std::int64_t k) {
               reason_parameter);
   const auto wide = broadcast<pack_of_one>(law);
   tally found;
-  typename loop::limit limits = loop::steps::start(a.law, b.varying);
+  pack_of_one stable_step = infinity;
   if constexpr (variant::solves)
-    solve_and_step_node<typename variant::template solver_kernel_on<node_view<Law, Number>>>(law, wide, b, c,
-                                                                                             found, limits);
+    solve_and_step_node<typename variant::template solver_kernel_on<node_view<Law, Number>>>(
+        law, wide, b, c, found, stable_step);
   else
-    loop::run_pack(wide, kit::prepared(wide, b.step), b, 0, c, found, limits);
+    loop::run_pack(wide, kit::prepared(wide, b.step), b, 0, c, found, stable_step);
   if (a.reasons) a.reasons[k] = static_cast<std::uint8_t>(found.reason);
-  if (a.limits) {
-    a.limits[3 * k] = limits.least.v;
-    a.limits[3 * k + 1] = limits.most_normal.v;
-    a.limits[3 * k + 2] = limits.most_tangential.v;
-  }
+  if (a.stable_steps) a.stable_steps[k] = stable_step.v;
 }
 
 // The kernels of a library: nothing where a law has no such variant.

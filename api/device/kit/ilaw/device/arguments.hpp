@@ -52,7 +52,7 @@ struct device_options : view_options {
       spin_previous;
   device_array impulse, velocity, moment, spin, energy, state_in, state_out, frame_in, frame_out, status;
   std::uint8_t* reasons;  // by position in the batch, as the next; null: not asked for
-  double* limits;         // three each: step_limit
+  double* stable_steps;
 };
 
 template <class Law>

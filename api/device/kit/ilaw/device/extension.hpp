@@ -3,8 +3,8 @@
 #pragma once
 
 #include <ilaw/ext/draft/device.h>
+#include <ilaw/device/arguments.hpp>
 #include <ilaw/kit/detail/evaluate.hpp>
-#include <ilaw/kit/device/arguments.hpp>
 
 // The images that ilaw_add_plugin links into the library.
 extern "C" {
@@ -101,7 +101,7 @@ class device_writer {
   const device_arguments<Law>& write(const ilaw_device_findings& findings) {
     to_.law = made_.at(b_.time);
     to_.reasons = findings.reasons;
-    to_.limits = findings.limits;
+    to_.stable_steps = findings.stable_steps;
     write_options();
     write_inputs();
     write_outputs();
@@ -183,12 +183,9 @@ struct device_functions {
                                       ilaw_report* report) {
     if (!opaque || !totals || !sized::is_complete(report)) return ILAW_INVALID_ARGUMENT;
     const float_environment own;
-    tally found{.bad_count = totals->bad_count,
-                .first_bad_node = totals->first_bad_node,
-                .stable_velocity_step = totals->limits[0],
-                .most_normal = totals->limits[1],
-                .most_tangential = totals->limits[2]};
-    add_limit_of_delassus(of<Law>(opaque).at(totals->time), found);
+    const tally found{.bad_count = totals->bad_count,
+                      .first_bad_node = totals->first_bad_node,
+                      .stable_velocity_step = totals->stable_step};
     return give_report(report, found, reason_text<Law>(static_cast<int>(totals->reason)));
   }
 
