@@ -287,7 +287,7 @@ def end_notched() -> Case:
         return {"box": [[along - near, -1.0, height - near], [along + near, 1.0, height + near]]}
 
     def joint(name: str, law: str, first: float, last: float, parameters: Scene) -> Scene:
-        facets = {"surface": "low.z_max", "discretization": "node_to_facet"}  # the areas of whole nodes, see start
+        facets = {"surface": "low.z_max", "discretization": "node_to_facet"}  # whole nodal areas, as `start` assumes
         return {"name": name, "law": law, "against": facets, "parameters": parameters,
                 "nodes": {"box": [[first - near, -1.0, -near], [last + near, 1.0, near]], "of": "up.z_min"}}  # fmt: skip
 

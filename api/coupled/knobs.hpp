@@ -36,7 +36,7 @@ inline constexpr std::size_t few_blocks = usually<std::size_t>(100, 1),
 inline constexpr std::uint32_t wake_interval = usually(4U, 1U);
 // Iterations of the conjugate method before others, and of each of these before another one gets its turn.
 inline constexpr std::uint32_t first_conjugate = usually(30U, 1U), first_part = usually(100U, 30U);
-// Newton's method before all of these.
+// Try Newton's method first.
 inline constexpr bool newton_first = is_hostile;
 
 }  // namespace ilaw::coupled::knobs

@@ -64,7 +64,7 @@ struct ContactPoint {
   bool is_beyond_border = false;  // beside the surface of a mesh
   double own_weight = 1.0;
   std::size_t own_partners = 0;  // the first ones, of the node's own body
-  double area = 0.0;             // of the overlap that it stands for; 0: that of the setup
+  double area = 0.0;             // overlap of this step; 0: use the area of the setup
 
   // As it was made, with the memory of its partners kept.
   void clear() {
@@ -189,7 +189,7 @@ class Counterpart {
   virtual void save(std::ostream& /*out*/) const {}
   virtual void load(std::istream& /*in*/) {}
   // The law stores energy: contact points have no areas of their own, and bonds may reach far.
-  virtual void expect_springs() {}
+  virtual void expect_stored_energy() {}
   // Whether two contacts may have a partner in common.
   virtual bool shares_partners() const { return false; }
   virtual bool keeps_normal() const { return false; }

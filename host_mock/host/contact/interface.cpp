@@ -38,8 +38,8 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
       search_(setup_, law_, contacts_),
       obstacle_(setup_, dimension_),
       amounts_(law_.info().amount_count) {
-  // Nothing would give or take the energy that follows an overlap.
-  if ((info().capabilities & ILAW_CAN_STORE_ENERGY) != 0) setup_.counterpart->expect_springs();
+  // An area that changes would change the stored energy without work (mortar.md, Areas).
+  if ((info().capabilities & ILAW_CAN_STORE_ENERGY) != 0) setup_.counterpart->expect_stored_energy();
   if (setup_.heat) heat_.emplace(law_.info(), setup_.heat->obstacle_temperature);
 }
 

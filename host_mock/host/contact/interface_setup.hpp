@@ -39,7 +39,7 @@ struct InterfaceSetup {
   bool keeps_all_active = false;        // also contacts that cannot be reached: same results, more work
   std::optional<HeatSetup> heat;
 
-  // That a contact stands for, which its law and its results have.
+  // Area of a contact, for its law and its results.
   double area(int node_index, const ContactPoint& point) const {
     return point.area > 0.0 ? area_factor * point.area : areas[static_cast<std::size_t>(node_index)];
   }

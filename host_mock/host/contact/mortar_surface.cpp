@@ -39,8 +39,9 @@ Eigen::AlignedBox3d bounds_of(const FacetShape& corners) {
   return box;
 }
 
-// How far a facet lies from the points of its box, at most: boxes in other axes are that much farther apart.
-double room_in_box(const FacetShape& corners) {
+// A bound of the distance from a point of the box to the facet: boxes in other axes are that much farther
+// apart.
+double box_slack(const FacetShape& corners) {
   const Eigen::AlignedBox3d box = bounds_of(corners);
   double most = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -134,9 +135,9 @@ void MortarSurface::follow(const Dofs& u) {
 // With boxes of its own axes the search finds all pairs whose boxes are within the horizon in these axes.
 void MortarSurface::find_candidates() {
   double own = 0.0, main = 0.0;
-  for (const Patch& patch : patches_) own = std::max(own, room_in_box(corners_of(patch)));
+  for (const Patch& patch : patches_) own = std::max(own, box_slack(corners_of(patch)));
   for (std::size_t k = 0; k < facets().size(); ++k)
-    main = std::max(main, room_in_box(corners_of(static_cast<std::int32_t>(k))));
+    main = std::max(main, box_slack(corners_of(static_cast<std::int32_t>(k))));
   ilaw_facets_overlaps_of asked{};
   asked.struct_size = sizeof asked;
   asked.corner_count = 4;
@@ -153,9 +154,9 @@ void MortarSurface::find_candidates() {
 }
 
 // The largest gap of rows that act on springs, which reach farther than contact.
-double MortarSurface::widest_bond() {
+double MortarSurface::widest_opening() {
   double widest = 0.0;
-  if (!has_springs_) return widest;
+  if (!stores_energy_) return widest;
   find_normals();
   for (const std::int32_t k : listed_nodes_) {
     if (!MeshSurface::is_held(k)) continue;
@@ -171,7 +172,7 @@ void MortarSurface::list_pairs(double reach) {
   if (is_list_made_) past_motion_ += motion();
   is_list_made_ = true;
   at_list_ = at_;
-  widest_ = widest_bond();
+  widest_ = widest_opening();
   horizon_ = std::max(reach, widest_) + listed_beyond * shortest_edge();
   find_candidates();
   listed_.clear();
@@ -326,7 +327,7 @@ void MortarSurface::find_contact(int node_index, const Dofs& u, double time, Con
   found.gap = row.apart.dot(row.normal);
   found.normal = row.normal;
   found.own_weight = row.own_weight;
-  found.area = has_springs_ ? 0.0 : row.area;
+  found.area = stores_energy_ ? 0.0 : row.area;
   found.own_partners = row.own_partners;
   for (const Partner& partner : row.partners) found.partners.add(partner);
 }

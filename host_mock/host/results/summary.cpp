@@ -142,7 +142,7 @@ json summary_of(const Scene& scene, const Integrator& integrator, const RunRecor
   if (integrator.temperatures()) summary["heat"] = describe_heat(integrator.temperatures()->report());
   if (const auto& found = integrator.prestressed())
     summary["prestress"] = {{"steps", found->steps}, {"residual", found->residual}};
-  else if (scene.prestress)  // that was not found
+  else if (scene.prestress)  // before it is looked for
     summary["prestress"] = {{"steps", nullptr}, {"residual", nullptr}};
   if (!scene.meshes.empty()) summary["meshes"] = scene.meshes;
   return summary;

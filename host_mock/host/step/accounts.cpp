@@ -14,10 +14,10 @@ namespace {
 // Part of the largest energy that interfaces may put in before a warning: a penalty that suits its
 // step puts in far less.
 constexpr double much_energy = 0.1;
-// As often the kinetic energy may be what was put in while the run goes on, beside the steps to the fourth:
-// unstable runs reach it in some tens of steps.
+// Kinetic energy over the energy put in that ends a run, in addition to the steps to the fourth: unstable
+// runs reach it in some tens of steps.
 constexpr double unstable_growth = 1e6;
-// The same at the end of a run: 0.995 of the critical step cannot reach it.
+// The same at the end of a run: up to 0.99 of the critical step it is at most 1/(1 - 0.99^2) = 50.
 constexpr double growth_at_end = 100.0;
 // Part of the energy below which contacts that do not agree differ by rounding.
 constexpr double rounding_energy = 1e-13;

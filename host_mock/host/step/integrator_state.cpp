@@ -151,9 +151,10 @@ void Integrator::set_tolerance(double tolerance) {
 void Integrator::save(std::ostream& out) const {
   write_value(out, steps_);
   write_value(out, has_started_);
-  if (prestressed_) {
-    write_value(out, prestressed_->steps);
-    write_value(out, prestressed_->residual);
+  if (prestress_) {
+    const PrestressReport found = prestressed_.value_or(PrestressReport{});
+    write_value(out, found.steps);
+    write_value(out, found.residual);
   }
   for (const Dofs* dofs : {&u_, &v_}) write_array(out, dofs->data(), static_cast<std::size_t>(dofs->size()));
   accounts_.save(out);

@@ -237,7 +237,7 @@ void AuditedInterface::check_node(int node_index, const AuditedStep& step) {
                              (own.impulse - call.impulse).cwiseProduct(call.delassus).norm() / speed));
 }
 
-// Bonds alone go on there.
+// Beyond the border only an intact bond has an impulse.
 void AuditedInterface::check_beyond_border(int node_index) const {
   const double impulse = interface_.impulse(interface_.contact_at(node_index)).norm();
   if (impulse > 0.0) fail(node_index, formatted("impulse: %.6g beyond the border of the surface", impulse));
@@ -246,11 +246,11 @@ void AuditedInterface::check_beyond_border(int node_index) const {
 // Once the gap is closed a rigid law lets nothing further in, but as fast as it came out in the step before:
 // then its impulse would do work on the way out.
 void AuditedInterface::check_gap(const Call& call, int node_index, const AuditedStep& step,
-                                 double of_speed) const {
+                                 double relative_bound) const {
   const bool is_rigid = stops_ && !(law_.info().capabilities & ILAW_CAN_ADHERE);
   if (!is_rigid || call.gap > -rounding * step.farthest) return;
   const Vector v = call.v_free + call.delassus.cwiseProduct(call.impulse);
-  const double bound = of_speed * std::max(step.speed, call.v_free.norm()) +
+  const double bound = relative_bound * std::max(step.speed, call.v_free.norm()) +
                        rounding * step.farthest / step.dt + std::max(0.0, call.v_previous.dot(call.normal));
   if (v.dot(call.normal) < -bound)
     fail(node_index, formatted("gap: it is %.3g and closes at %.3g, which a rigid law allows by %.3g alone",

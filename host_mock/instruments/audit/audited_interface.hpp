@@ -53,7 +53,7 @@ class AuditedInterface {
   void check_node(int node_index, const AuditedStep& step);
   void check_beyond_border(int node_index) const;
   bool is_final_rupture(int node_index) const;
-  void check_gap(const Call& call, int node_index, const AuditedStep& step, double of_speed) const;
+  void check_gap(const Call& call, int node_index, const AuditedStep& step, double relative_bound) const;
   void check_energy(const AuditedStep& step) const;
   [[noreturn]] void fail(int node_index, const std::string& what) const;
 

@@ -47,7 +47,7 @@ double MadeProblem::size_of(const Matrix& h, const Wrench& impulse) const {
 // Velocity by which an impulse is off the law's. Large friction coefficients, ruptures and softening bonds
 // answer to the last digits of a velocity, so it counts as right if it is right at a velocity within the
 // tolerance, which is looked for along four diagonals. So do gaps that a velocity within the tolerance
-// closes; those that a rounding closes are closed (coupled.h, tolerance).
+// closes; a gap within rounding counts as closed (coupled.h, tolerance).
 double MadeProblem::least_error(const Contact& contact, const Matrix& h, const Wrench& v_free,
                                 const Wrench& r) const {
   constexpr double known = 1e-10, small = 1e-9, rounded = 1e-14;
@@ -56,9 +56,9 @@ double MadeProblem::least_error(const Contact& contact, const Matrix& h, const W
   if (contact.gap > 0.0 && contact.gap <= known * scale() * setup_.step) {
     Contact closed = contact;
     closed.gap = 0.0;
-    const double of_closed = least_error(closed, h, v_free, r);
-    if (contact.gap <= rounded * scale() * setup_.step) return of_closed;
-    least = std::min(least, of_closed);
+    const double error_if_closed = least_error(closed, h, v_free, r);
+    if (contact.gap <= rounded * scale() * setup_.step) return error_if_closed;
+    least = std::min(least, error_if_closed);
   }
   for (std::size_t k = 0; k < 4 && least > small * scale(); ++k) {
     const Vector direction{k & 1U ? known : -known, k & 2U ? known : -known, known};

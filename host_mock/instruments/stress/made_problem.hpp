@@ -29,7 +29,7 @@ struct MadeSetup {
   int ends = 1;              // bodies on either side at most, with weights: the nodes of facets
   bool has_axes = false;     // weights are matrices, of nodes with axes of their own; with the form FULL
   double gap = 0.0;          // largest, over speed times step
-  bool rounds_gaps = false;  // closed ones are open by a rounding
+  bool rounds_gaps = false;  // closed gaps are 1e-15 open
   double open = 1.0 / 3.0;
   double speed = 1.0, step = 1e-3;
 };

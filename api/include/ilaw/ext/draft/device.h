@@ -27,8 +27,8 @@ typedef struct ilaw_device_image {
 /* Arrays on the device for what evaluate reports, by position in the batch. Null: not asked for. */
 typedef struct ilaw_device_findings {
   uint32_t struct_size;
-  uint32_t reserved; /* 0 */
-  uint8_t* reasons;  /* node_count codes: why a node is bad; 0 of good ones */
+  uint32_t reserved;    /* 0 */
+  uint8_t* reasons;     /* node_count codes: why a node is bad; 0 of good ones */
   double* stable_steps; /* node_count; infinity of nodes that limit no step */
 } ilaw_device_findings;
 
