@@ -362,8 +362,12 @@ class batch_walk : walk_base {
   }
   array<const Number> gather(const ilaw_input& a, int components, const node_range& n, Number* copy) const {
     const array<const Number> placed = place(a, components, n, copy);
-    if (placed.at == copy) copy_array(numbers_in<Host>(a), a, components, n, copy);
+    if (placed.at == copy && !is_there(a, n)) copy_array(numbers_in<Host>(a), a, components, n, copy);
     return placed;
+  }
+  // One value for all nodes is the same in every block.
+  bool is_there(const ilaw_input& a, const node_range& n) const {
+    return a.node_stride == 0 && n.count <= gathered_;
   }
   void scatter(const ilaw_output& a, const array<Number>& placed, const node_range& n,
                const Number* copy) const {
@@ -373,7 +377,7 @@ class batch_walk : walk_base {
   const double* gather_parameter(const ilaw_input& a, const node_range& n, double* copy) const {
     if constexpr (std::is_same_v<Host, double>)
       if (!n.listed && stays(a, 1)) return a.values + n.first;
-    copy_nodes<1>(numbers_in<Host>(a), a.node_stride, 0, n, copy);
+    if (!is_there(a, n)) copy_nodes<1>(numbers_in<Host>(a), a.node_stride, 0, n, copy);
     return copy;
   }
   void run_with_windows(view<Number>& v, const node_range& n, ilaw_kit_loop loop, const void* law,
@@ -407,6 +411,7 @@ class batch_walk : walk_base {
     for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
       v.parameters[made_.per_node_parameters[k]] =
           gather_parameter(b_.per_node_parameters[k], n, parameter_scratch_ + k * block_nodes);
+    if (n.count > gathered_) gathered_ = n.count;
   }
   void open_outputs(view<Number>& v, const node_range& n) {
     const auto open = [&](const array_card& card, const ilaw_output& a, auto& to, Number* copy) {
@@ -472,6 +477,7 @@ class batch_walk : walk_base {
   };
 
   double* const parameter_scratch_;
+  std::int64_t gathered_ = 0;  // nodes of the largest block whose inputs were gathered
   scratch s_;
 };
 
