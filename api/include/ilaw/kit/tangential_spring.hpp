@@ -2,7 +2,7 @@
 // tangential entry. Its memory is the elastic slip xi, xi' = xi + h (v^- + v)/2 while it sticks. Then
 // r_T = -h k (xi + xi')/2, so that
 //     s = v_free + v^- + 4 xi/h + (h_T + 4/(h^2 k)) r_T = 0,
-// and a node that slides has r_T on the cone, against s. plugins/penalty/penalty.md shows that no step adds
+// and a node that slides has r_T on the cone, against s. docs/theory/springs.md shows that no step adds
 // energy. k = inf: a rigid stick.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
