@@ -140,8 +140,8 @@ bool energy_rupture(const Trial& trial, Draw& draw) {
   const std::size_t size = trial.info.state_size;
   for (std::size_t k = 1; k < script.size(); ++k)
     for (std::size_t i = 0; i < script[k].count; ++i) {
-      const double* before = &results[k - 1].state[0] + i * size;
-      const bool same = std::equal(before, before + size, &results[k].state[0] + i * size, same_bits);
+      const double* before = results[k - 1].state.data() + i * size;
+      const bool same = std::equal(before, before + size, results[k].state.data() + i * size, same_bits);
       const Node at{trial, script[k], results[k], i};
       const double part = at.energy()[ILAW_ENERGY_RUPTURE];
       const int said = at.found.status.empty() ? int{ILAW_FREE} : at.status();
