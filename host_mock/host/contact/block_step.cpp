@@ -113,6 +113,8 @@ class BlockWalk {
     const InterfaceSetup& setup = step_.setup;
     if (setup.common_gap_offset != 0.0 || !setup.own_gap_offsets.empty())
       for (std::ptrdiff_t i = 0; i < count_; ++i) gap_[i] -= setup.gap_offset(node_index(i));
+    for (std::ptrdiff_t i = 0; i < count_; ++i)
+      gap_[i] = setup.counterpart->known_gap(node_index(i), step_.step.u, gap_[i]);
   }
   int node_index(std::ptrdiff_t i) const { return at_.node_index[contact(i)]; }
 

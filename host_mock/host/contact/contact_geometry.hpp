@@ -23,7 +23,7 @@ inline void locate_contact(const InterfaceSetup& setup, int node_index, const St
   if (counterpart.turns())
     found.surface =
         surface_velocities(counterpart, node_index, step.u, step.time, {found.point.gap, normal}, rates);
-  found.point.gap -= setup.gap_offset(node_index);
+  found.point.gap = counterpart.known_gap(node_index, step.u, found.point.gap - setup.gap_offset(node_index));
 }
 
 // The velocity of a node relative to its partners.

@@ -131,9 +131,11 @@ void ContactSearch::look_at(std::size_t chunk, const StepView& step) {
     const int contact = may_be_awake ? contacts_.index_of(first + i) : -1;
     const bool awake = contact >= 0 ? contacts_.must_be_evaluated(static_cast<std::size_t>(contact))
                                     : !law_.may_skip_fresh();
-    const double gap = skips ? bounds[i] - setup_.gap_offset(static_cast<int>(first + i)) : 0.0;
-    const bool is_near =
-        awake || !skips || may_touch(gap) || setup_.counterpart->is_held(static_cast<int>(first + i));
+    const int node_index = static_cast<int>(first + i);
+    const double gap =
+        !skips ? 0.0
+               : setup_.counterpart->known_gap(node_index, step.u, bounds[i] - setup_.gap_offset(node_index));
+    const bool is_near = awake || !skips || may_touch(gap) || setup_.counterpart->is_held(node_index);
     is_near_[first + i] = is_near ? 1 : 0;
     near += is_near ? 1 : 0;
     least = gap < least ? gap : least;

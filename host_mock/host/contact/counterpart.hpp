@@ -6,11 +6,14 @@
 #include "model/model.hpp"
 #include "model/obstacle.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <iosfwd>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -136,6 +139,10 @@ void flat_gaps(const Model& model, const std::int32_t* nodes, std::ptrdiff_t cou
   }
 }
 
+// In the last places of the largest coordinate: of the dozen operations from a node, its facet and their
+// normal.
+inline constexpr double roundings_of_gaps = 16.0;
+
 // What a surface is asked for in a step: the nodes that may come within reach.
 struct Approach {
   double travelled;  // how far nodes and surface may have approached since the last step, at most
@@ -164,6 +171,12 @@ class Counterpart {
   }
   // The same of count nodes from the first on; several threads may ask at once.
   virtual void gap_bounds(int first, int count, const Dofs& u, double time, double* bounds) const;
+  // A gap, less its offset, that is open by no more than the rounding of positions is closed: else a law that
+  // acts at closed gaps alone would let a node at rest fall for a step, alone but not in the coupled solver
+  // (coupled.h, rounding).
+  double known_gap(int node_index, const Dofs& u, double gap) const {
+    return gap > 0.0 && gap <= rounding_at(node_index, u) ? 0.0 : gap;
+  }
   // Takes the displacements that contact points and gap bounds are asked for from here on.
   virtual void follow(const Dofs& /*u*/) {}
   // A surface that finds the nodes near it by itself (proximity_filter.hpp does it for the others): whether
@@ -200,6 +213,16 @@ class Counterpart {
 
   const Model& model_;
   std::vector<int> nodes_, partners_;
+
+ private:
+  // Of a difference of coordinates at the node.
+  double rounding_at(int node_index, const Dofs& u) const {
+    const int d = model_.dimension(), first = d * nodes_[static_cast<std::size_t>(node_index)];
+    double largest = 0.0;
+    for (int dof = first; dof < first + d; ++dof)
+      largest = std::max(largest, std::fabs(model_.position()[dof] + u[dof]));
+    return roundings_of_gaps * std::numeric_limits<double>::epsilon() * largest;
+  }
 };
 
 // Velocities of a turning surface in the steps before and after a time, where a node meets it.

@@ -95,13 +95,12 @@ void CoupledStep::number_bodies() {
 
 // Rounding of a difference of coordinates, as a velocity.
 double CoupledStep::rounding_of_gaps(const StepView& step) const {
-  constexpr double ulps = 16.0;  // of the dozen roundings of a node, its facet and their normal
   const int d = model_.dimension();
   double largest = 0.0;
   for (const std::int32_t node : nodes_)
     for (Eigen::Index dof = Eigen::Index{d} * node; dof < Eigen::Index{d} * (node + 1); ++dof)
       largest = std::max(largest, std::fabs(model_.position()[dof] + step.u[dof]));
-  return ulps * std::numeric_limits<double>::epsilon() * largest / step.dt;
+  return roundings_of_gaps * std::numeric_limits<double>::epsilon() * largest / step.dt;
 }
 
 // OpenMP's threads, which the rest of the step uses.
