@@ -5,7 +5,8 @@
 # "balance" the energy balance must close to 1e-12, without "warns" there must be no warning. "fails" has what is told
 # of a run that ends with code 1, "unaudited" is for what an audit would end before. "twin" is a second run, with other
 # keys ("set"), another scene or other options: it has the bits of the first if "bits" is true, and expressions see it
-# as `twin`. "files" stand beside the scene.
+# as `twin`. "files" stand beside the scene. "way": what is asked depends on the way to the solution, which a hostile
+# build takes otherwise: iterations, a rounding, or which of several solutions is found.
 import contextlib
 import itertools
 import json
@@ -162,7 +163,8 @@ class Motions(unittest.TestCase):
 
     def test_are_as_known(self):
         table = json.loads(TABLE.read_text())
-        runs = [(row, dict(zip(row.get("each", {}), values))) for row in table["motions"]
+        rows = [row for row in table["motions"] if not ("way" in row and os.environ.get("ILAW_HOSTILE") == "1")]
+        runs = [(row, dict(zip(row.get("each", {}), values))) for row in rows
                 for values in itertools.product(*(computed(value, vars(np)) for value in row.get("each", {}).values()))]
         self.assertGreater(len(runs), 100)
         with ThreadPoolExecutor(2) as pool:

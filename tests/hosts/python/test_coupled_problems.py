@@ -15,6 +15,9 @@ from ilaw.coupled import Bodies, Contacts, Method, Solver
 
 G, UP = 10.0, np.array([0.0, 0.0, 1.0])
 HALF = 0.5  # radius of a sphere
+IS_HOSTILE = os.environ.get("ILAW_HOSTILE") == "1"
+# What depends on the way to the solution, which a hostile build takes otherwise: iterations, methods, roundings.
+usual_way = pytest.mark.skipif(IS_HOSTILE, reason="another way to the solution")
 
 
 class Problem:
@@ -120,6 +123,7 @@ def test_a_gap_of_rounding_is_none(gap):
 # ---- what the report says ----
 
 
+@usual_way
 def test_what_is_not_solved_is_named():
     report = column(400, lambda k: 4.0 if k == 7 else 1.0).solve(tolerance=1e-12, most_sweeps=200)
     assert report.residual > 1e-12 and report.energy_error > 0 and report.opposed is None
@@ -138,6 +142,7 @@ def test_more_iterations_are_no_worse():
         least = min(least, report.residual)
 
 
+@usual_way
 def test_a_splitting_that_ends_unsolved_is_reported():
     """Both budgets end within the first splitting, whose impulses are given back: more of it are better ones."""
     early, late = (column(400, aside=0.01).solve(tolerance=1e-14, most_sweeps=most) for most in (310, 370))
@@ -167,6 +172,7 @@ def test_a_chain_of_masses_of_1_and_1e7_moves_as_one():
     np.testing.assert_allclose(links.v[:, 0], common, atol=1e-6)
 
 
+@usual_way
 def test_islands_have_the_last_status_and_the_slowest_method():
     """Balls high up are reached last: each column is an island, whose contacts stick at the end. The method is that of the
     island that takes longer, in either order."""
@@ -233,7 +239,7 @@ def test_a_heavy_box_stays_on_a_light_one(ratio, most):
         fallen -= h * boxes.v[1, 2]
     assert abs(fallen) <= (1e-8 if is_short else 1e-12)  # of an edge of 1
     weight = boxes.contacts.impulse[::2, 2].sum()
-    assert weight == pytest.approx((1 + ratio) * G * h, rel=1e-4 if is_short else 1e-9)
+    assert weight == pytest.approx((1 + ratio) * G * h, rel=1e-4 if is_short else 1e-8 if IS_HOSTILE else 1e-9)
 
 
 # ---- axes that are held, and grooves ----
@@ -437,6 +443,8 @@ def flying_on(problem, steps):
 def test_a_box_that_lands_flat_leaves_flat(law, places, mu, e):
     """With e times its speed, whatever part of a step the gap is: at once, or with the second impulse of `impact`, whose
     friction needs one tangential entry of H: a box that does not turn."""
+    if IS_HOSTILE and (law, places) == ("impact", 9):
+        pytest.skip("Newton's method leaves some of the nine without an impulse (resolved_impact.md, Limits)")
     form = "full" if mu == 0 or law == "coulomb" else "scalar"
     x = (-0.375, 0.0, 0.375) if places == 9 else (-0.375, 0.375)
     for part in range(0, 101, 2):
