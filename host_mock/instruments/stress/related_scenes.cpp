@@ -392,8 +392,9 @@ json nudged(json source, double farthest, std::uint64_t seed) {
   Draw draw(seed);
   for_each_quantity(source, [&](const Quantity& quantity, json& value) {
     const bool moves = quantity.pattern.starts_with("/model/") || quantity.pattern.starts_with("/loads/");
-    const bool is_place = quantity.form == Form::place;
-    if (!moves || (!is_place && quantity.form != Form::vector && quantity.mass == 0.0)) return;
+    const bool is_place = quantity.form == Form::place, is_radius = quantity.pattern.ends_with("/radius");
+    const bool is_size = quantity.form == Form::vector || quantity.mass != 0.0;
+    if (!is_radius && !(moves && (is_place || is_size))) return;
     for_numbers(value, [&](double old) {
       const double to = draw.chance(0.5) ? infinity : -infinity;
       if (is_place && farthest > 0.0) return old + std::copysign(ulps * farthest, to);
