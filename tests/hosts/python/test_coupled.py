@@ -140,6 +140,7 @@ def test_ranks_with_different_kinds_of_contacts_take_one_step(seed, width):
         np.testing.assert_allclose(velocity, alone, atol=1e-11)
 
 
+@pytest.mark.skipif(os.environ.get("ILAW_HOSTILE") == "1", reason="Newton's method comes first where there is one rank")
 def test_a_rank_without_contacts_takes_the_same_iterations():
     """Anderson's corrections of this problem are too large 33 times. If each rank judged its own, the rank without
     contacts would go on with another one than the rank that goes back."""
@@ -160,7 +161,7 @@ def test_a_rank_without_contacts_takes_the_same_iterations():
         return report.sweeps, report.method, bodies.velocity
 
     sweeps, method, alone = solve(2)
-    assert method == coupled.Method.ANDERSON or os.environ.get("ILAW_HOSTILE") == "1"
+    assert method == coupled.Method.ANDERSON
     for found in on_two_ranks(count, solve):
         assert found[:2] == (sweeps, method)
         np.testing.assert_allclose(found[2], alone, atol=1e-12)
