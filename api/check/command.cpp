@@ -84,7 +84,8 @@ int check_library(const CommandLine& line) {
   return checked.all_passed() ? 0 : 1;
 }
 
-// CLI::Range lets nan pass.
+}  // namespace
+
 CLI::Validator within(double least, double most) {
   const std::string range = "from " + CLI::detail::to_string(least) + " to " + CLI::detail::to_string(most);
   const auto complaint = [=](const std::string& found) -> std::string {
@@ -95,8 +96,6 @@ CLI::Validator within(double least, double most) {
   };
   return {complaint, range};
 }
-
-}  // namespace
 
 std::function<int()> add_options(CLI::App& command) {
   const auto line = std::make_shared<CommandLine>();

@@ -8,6 +8,9 @@
 
 namespace ilaw::check {
 
+// A finite number of a range, both ends included; CLI::Range lets nan pass.
+CLI::Validator within(double least, double most);
+
 // Adds the options to a command. The function that comes back is called once they are parsed: it checks,
 // prints, and gives the exit code, 0 where no rule is broken and else 1. It throws UsageError where there is
 // nothing to check, and std::runtime_error where the report cannot be written.

@@ -188,12 +188,6 @@ std::string Trial::text() const { return text_of(setup) + "; " + text_of(values)
 
 std::vector<const ilaw_parameter*> Trial::parameters() const { return parameters_of(law, setup); }
 
-std::optional<std::uint32_t> axis_of(const ilaw_parameter& p, const std::string& name) {
-  for (std::uint32_t k = 0; k < p.axis_count; ++k)
-    if (name == p.axes[k]) return k;
-  return std::nullopt;
-}
-
 const ilaw_parameter* parameter_of(const ilaw_law& law, const std::string& name) {
   for (const ilaw_parameter* p : all_parameters(law))
     if (name == p->name) return p;

@@ -150,8 +150,6 @@ struct Trial {
 };
 
 inline bool has(const ilaw_parameter& p, ilaw_parameter_flags flag) { return (p.flags & flag) != 0; }
-// The place of an axis of a parameter; none where it cannot be a table over it.
-std::optional<std::uint32_t> axis_of(const ilaw_parameter& p, const std::string& name);
 const ilaw_parameter* parameter_of(const ilaw_law& law, const std::string& name);
 bool in_range(const ilaw_parameter& p, double value);
 // The value that a parameter has: of the list, or its default.

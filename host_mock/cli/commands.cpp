@@ -12,17 +12,6 @@
 
 namespace ilaw::host {
 
-CLI::Validator number_from(double least, double most) {
-  const std::string allowed = text_of("from %g", least) + text_of(" to %g", most);
-  const auto complaint = [=](const std::string& found) {
-    double value = 0.0;
-    const bool is_number = CLI::detail::lexical_cast(found, value);
-    if (is_number && value >= least && value <= most) return std::string();
-    return "found '" + found + "', expected a number " + allowed;
-  };
-  return {complaint, allowed};
-}
-
 void add_threads(CLI::App& command, int& threads) {
   command.add_option("--threads", threads, "Threads; any number gives the same bits")
       ->check(CLI::Range(1, 1024))

@@ -29,9 +29,6 @@ void add_check(CLI::App& app, int& code);
 void add_stress(CLI::App& app, int& code);
 void add_bench(CLI::App& app, int& code);
 
-// A finite number of a range, both ends included; CLI::Range lets nan pass.
-CLI::Validator number_from(double least, double most);
-
 // The option --threads, for commands that run scenes.
 void add_threads(CLI::App& command, int& threads);
 void set_threads(int threads);

@@ -1,6 +1,7 @@
 // `ilaw plot`, `view`, `table`, `converge` and `study`: modules of the Python package. Their options are
 // declared for checks and help; Python reads them again.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "check/command.hpp"
 #include "check/progress.hpp"
 #include "cli/commands.hpp"
 #include "cli/python.hpp"
@@ -24,7 +25,7 @@ CLI::Option* add_list(CLI::App& command, const std::string& name, const std::str
 void add_refinement(CLI::App& command, const std::string& levels, const CLI::Range& allowed) {
   const auto shared = std::make_shared<std::pair<int, check::ProgressForm>>(1, check::ProgressForm::line);
   add(command, "--levels", "INT", levels)->check(allowed);
-  add(command, "--factor", "FLOAT", "Refinement from run to run")->check(number_from(1.01, 10.0));
+  add(command, "--factor", "FLOAT", "Refinement from run to run")->check(check::within(1.01, 10.0));
   add(command, "--refine", "TEXT", "time, or mesh (with the time step)")
       ->check(CLI::IsMember({"time", "mesh"}));
   add_threads(command, shared->first);
@@ -57,7 +58,7 @@ void add_view(CLI::App& app, int& /*code*/) {
   add(command, "-o,--out", "TEXT", "File to write (default: view.html in the folder)");
   add(command, "--megabytes", "FLOAT",
       "About the most that the data take: first frames are left out, then nodes")
-      ->check(number_from(0.01, 2000.0))
+      ->check(check::within(0.01, 2000.0))
       ->default_str("50");
   command.footer(
       "The file opens in any browser and needs no network.\n"

@@ -49,9 +49,6 @@ class StateColumns {
     for (std::size_t c = 0; c < numbers_; ++c) at(count_, c) = state[c];
     ++count_;
   }
-  void take(std::size_t contact, const StateColumns& from) {
-    for (std::size_t c = 0; c < numbers_; ++c) at(contact, c) = from.at(contact, c);
-  }
   std::vector<double> of(std::size_t contact) const {
     std::vector<double> state(numbers_);
     for (std::size_t c = 0; c < numbers_; ++c) state[c] = at(contact, c);

@@ -11,6 +11,7 @@
 #include <limits>
 #include <numeric>
 #include <set>
+#include <span>
 
 namespace ilaw::host {
 namespace {
@@ -45,15 +46,12 @@ struct ElementFace {
 };
 
 void add_faces(const MeshCell& cell, std::size_t number, std::vector<ElementFace>& all_faces) {
-  const auto add = [&](const LocalFace& corners) {
+  const bool is_box = cell.kind == CellKind::hexahedron;
+  for (const LocalFace& corners : is_box ? std::span<const LocalFace>(hexahedron_faces) : tetrahedron_faces) {
     Facet nodes;
     for (std::size_t k = 0; k < 4; ++k) nodes[k] = cell.nodes[corners[k]];
     all_faces.push_back({key_of(nodes), nodes, number});
-  };
-  if (cell.kind == CellKind::hexahedron)
-    std::for_each(hexahedron_faces.begin(), hexahedron_faces.end(), add);
-  else
-    std::for_each(tetrahedron_faces.begin(), tetrahedron_faces.end(), add);
+  }
 }
 
 // All all_faces of all elements, those with the same nodes side by side.
@@ -62,8 +60,7 @@ class FaceList {
   explicit FaceList(const MeshData& mesh) {
     for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell)
       if (is_element(mesh.cells[cell].kind)) add_faces(mesh.cells[cell], cell, faces_);
-    std::stable_sort(faces_.begin(), faces_.end(),
-                     [](const ElementFace& a, const ElementFace& b) { return a.key < b.key; });
+    std::ranges::stable_sort(faces_, {}, &ElementFace::key);
     for (std::size_t k = 0; k < faces_.size();) {
       const std::size_t first = k;
       while (k < faces_.size() && faces_[k].key == faces_[first].key) ++k;
@@ -74,23 +71,13 @@ class FaceList {
                         std::to_string(faces_[first + 2].cell) +
                         ": found one face in all of them, expected a face in at most two elements");
     }
+    std::ranges::stable_sort(boundary_, {}, &ElementFace::cell);
   }
   // In the order of the elements.
-  std::vector<ElementFace> boundary() const {
-    std::vector<ElementFace> all_faces = boundary_;
-    std::stable_sort(all_faces.begin(), all_faces.end(),
-                     [](const ElementFace& a, const ElementFace& b) { return a.cell < b.cell; });
-    return all_faces;
-  }
-  bool has(const Facet& key) const { return find(faces_, key) != nullptr; }
+  const std::vector<ElementFace>& boundary() const { return boundary_; }
+  bool has(const Facet& key) const { return std::ranges::binary_search(faces_, key, {}, &ElementFace::key); }
 
  private:
-  static const ElementFace* find(const std::vector<ElementFace>& all_faces, const Facet& key) {
-    const auto found =
-        std::lower_bound(all_faces.begin(), all_faces.end(), key,
-                         [](const ElementFace& face, const Facet& wanted) { return face.key < wanted; });
-    return found != all_faces.end() && found->key == key ? &*found : nullptr;
-  }
   std::vector<ElementFace> faces_, boundary_;
 };
 

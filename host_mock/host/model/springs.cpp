@@ -102,18 +102,14 @@ double Sprung::potential(const Dofs& u) const {
   return energy;
 }
 
-void Dampers::damp(double duration, Motions at, Dofs& impulse) const {
-  for (const Spring& spring : springs_) {
-    if (spring.damping == 0.0) continue;
-    const Line line = line_of(model_, spring, at.u);
-    const double rate = stretch_rate(model_, spring, line.direction, at.v);
-    add_pull(spring, duration * spring.damping * rate * line.direction, impulse);
-  }
-}
-
 void Dampers::correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const {
   Dofs own = Dofs::Zero(v.size());
-  damp(step.duration(), before, own);
+  for (const Spring& spring : springs_) {
+    if (spring.damping == 0.0) continue;
+    const Line line = line_of(model_, spring, before.u);
+    const double rate = stretch_rate(model_, spring, line.direction, before.v);
+    add_pull(spring, step.duration() * spring.damping * rate * line.direction, own);
+  }
   v += own.cwiseQuotient(model_.mass());
   impulse += own;
 }

@@ -57,8 +57,6 @@ class Dampers : public Load {
   bool damps() const override { return true; }
 
  private:
-  void damp(double duration, Motions at, Dofs& impulse) const;
-
   const Model& model_;
   std::vector<Spring> springs_;
 };

@@ -3,8 +3,9 @@
 
 #include "base/bytes.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace ilaw::host {
@@ -82,17 +83,12 @@ void Forces::add_at(int node, const double* impulse, const ForceSetup& force, Re
   const Eigen::Index d = scene_.model->dimension();
   for (Eigen::Index c = 0; c < d; ++c) sum.impulse[c] += impulse[c];
   if (!force.about) return;
-  std::array<double, 3> arm{}, p{};
-  for (std::size_t c = 0; c < static_cast<std::size_t>(d); ++c) {
-    const Eigen::Index dof = node * d + static_cast<Eigen::Index>(c);
-    arm[c] = scene_.model->position()[dof] + displacement[dof] - (*force.about)[static_cast<Eigen::Index>(c)];
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero(), p = arm;
+  for (Eigen::Index c = 0; c < d; ++c) {
+    arm[c] = scene_.model->position()[node * d + c] + displacement[node * d + c] - (*force.about)[c];
     p[c] = impulse[c];
   }
-  const auto about = [&](std::size_t c) {
-    return arm[(c + 1) % 3] * p[(c + 2) % 3] - arm[(c + 2) % 3] * p[(c + 1) % 3];
-  };
-  for (Eigen::Index c = 0; c < sum.moment.size(); ++c)
-    sum.moment[c] += about(d == 2 ? 2 : static_cast<std::size_t>(c));
+  sum.moment += arm.cross(p).tail(sum.moment.size());
 }
 
 std::vector<std::string> Forces::names() const {

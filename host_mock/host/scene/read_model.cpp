@@ -54,27 +54,14 @@ std::unique_ptr<Model> read_rotating_spring(const json& model) {
   return std::make_unique<Sprung>(std::make_unique<Points>(2, std::vector{point}), std::vector{spring});
 }
 
-// Bodies are named in a scene, or bar0, bar1 ...
-class BodyNames {
- public:
-  explicit BodyNames(const char* kind) : kind_(kind) {}
-  // Names the kind of the bodies that follow.
-  void name_kind(const char* kind) {
-    kind_ = kind;
-    first_ = seen_.size();
-  }
-  std::string next(const json& body, const std::string& pointer) {
-    std::string name = body.value("name", kind_ + std::to_string(seen_.size() - first_));
-    if (name == "all" || !seen_.insert(name).second)
-      throw mistake(pointer + "/name", "'" + name + "'", "a name of its own for each body, other than 'all'");
-    return name;
-  }
-
- private:
-  std::string kind_;
-  std::size_t first_ = 0;
-  std::set<std::string> seen_;
-};
+// Bodies are named in a scene, or as kind and number: bar0, bar1 ... Adds the name to those seen.
+std::string name_of(const json& body, const std::string& number, const std::string& pointer,
+                    std::set<std::string>& seen) {
+  std::string name = body.value("name", number);
+  if (name == "all" || !seen.insert(name).second)
+    throw mistake(pointer + "/name", "'" + name + "'", "a name of its own for each body, other than 'all'");
+  return name;
+}
 
 // Least memory of a run: positions, displacements, velocities, masses and impulses, and the
 // nodes of the elements.
@@ -106,15 +93,15 @@ void check_nodes(double nodes, const json& body, const std::string& pointer) {
 
 std::unique_ptr<Model> read_bars(const json& model) {
   std::vector<BarSetup> bars;
-  BodyNames names("bar");
+  std::set<std::string> names;
   double nodes = 0.0;
   for (std::size_t k = 0; k < model["bars"].size(); ++k) {
     const json& bar = model["bars"][k];
     const std::string pointer = at("/model/bars", k);
     check_nodes(nodes += bar["elements"].get<double>() + 1.0, bar, pointer);
-    bars.push_back({names.next(bar, pointer), bar.value("start", 0.0), bar["length"].get<double>(),
-                    bar["elements"].get<int>(), bar["young"].get<double>(), bar["density"].get<double>(),
-                    bar.value("section", 1.0), bar.value("velocity", 0.0)});
+    bars.push_back({name_of(bar, "bar" + std::to_string(k), pointer, names), bar.value("start", 0.0),
+                    bar["length"].get<double>(), bar["elements"].get<int>(), bar["young"].get<double>(),
+                    bar["density"].get<double>(), bar.value("section", 1.0), bar.value("velocity", 0.0)});
   }
   check_memory(nodes, 1, "/model/bars");
   return std::make_unique<Bars>(bars);
@@ -130,7 +117,7 @@ Element read_element(const json& body) {
   return body.value("element", "full") == "full" ? Element::full : Element::mean_dilatation;
 }
 
-std::vector<MeshSetup> read_boxes(const json& given, BodyNames& names) {
+std::vector<MeshSetup> read_boxes(const json& given, std::set<std::string>& names) {
   std::vector<BoxSetup> setups;
   double nodes = 0.0;
   for (std::size_t k = 0; k < given.size(); ++k) {
@@ -139,7 +126,8 @@ std::vector<MeshSetup> read_boxes(const json& given, BodyNames& names) {
     const auto elements = block["elements"].get<std::array<int, 3>>();
     nodes += (elements[0] + 1.0) * (elements[1] + 1.0) * (elements[2] + 1.0);
     check_nodes(nodes, block, pointer);
-    setups.push_back({names.next(block, pointer), read_vector_or_zero(block, "corner", 3, pointer),
+    setups.push_back({name_of(block, "block" + std::to_string(k), pointer, names),
+                      read_vector_or_zero(block, "corner", 3, pointer),
                       read_vector(block["size"], 3, pointer + "/size"),
                       read_vector_or_zero(block, "velocity", 3, pointer), elements,
                       read_material(block["material"]), read_element(block)});
@@ -153,13 +141,13 @@ std::vector<MeshSetup> read_boxes(const json& given, BodyNames& names) {
 // Blocks first, then meshes.
 std::unique_ptr<Model> read_solids(const json& model, const std::filesystem::path& scene_file,
                                    json& described) {
-  BodyNames names("block");
+  std::set<std::string> names;
   std::vector<MeshSetup> bodies = read_boxes(model.value("blocks", json::array()), names);
   const std::size_t first_mesh = bodies.size();
-  names.name_kind("mesh");
   const json meshes = model.value("meshes", json::array());
   for (std::size_t k = 0; k < meshes.size(); ++k) {
-    const std::string pointer = at("/model/meshes", k), name = names.next(meshes[k], pointer);
+    const std::string pointer = at("/model/meshes", k);
+    const std::string name = name_of(meshes[k], "mesh" + std::to_string(k), pointer, names);
     MeshSetup& setup = bodies.emplace_back(read_mesh(meshes[k], pointer, scene_file));
     setup.name = name;
     setup.material = read_material(meshes[k]["material"]);

@@ -9,14 +9,10 @@ namespace ilaw::host {
 
 using nlohmann::json;
 
-void check_components(int count, int dimension, const std::string& pointer) {
-  if (count != dimension)
-    throw mistake(pointer, std::to_string(count) + " components",
-                  std::to_string(dimension) + ", the dimension of the model");
-}
-
 Vector read_vector(const json& value, int dimension, const std::string& pointer) {
-  check_components(static_cast<int>(value.size()), dimension, pointer);
+  if (static_cast<int>(value.size()) != dimension)
+    throw mistake(pointer, std::to_string(value.size()) + " components",
+                  std::to_string(dimension) + ", the dimension of the model");
   Vector vector(dimension);
   for (int i = 0; i < dimension; ++i) vector[i] = value[static_cast<std::size_t>(i)].get<double>();
   return vector;

@@ -15,9 +15,6 @@
 
 namespace ilaw::host {
 
-// Throws where a vector has other than the model's dimension.
-void check_components(int count, int dimension, const std::string& pointer);
-
 // A vector of the model's dimension.
 Vector read_vector(const nlohmann::json& value, int dimension, const std::string& pointer);
 // A vector whose key may be left out; then it is zero.
@@ -36,6 +33,9 @@ Motion read_motion(const nlohmann::json& object, int dimension, const std::strin
 // "all" or the name of a set; [0, 3]; {"near": [x, y, z]}, the nearest node, or those nearest to a
 // list of places; {"box": [[...], [...]], "of": set}, those inside. Throws SceneError at the pointer.
 NodeSet select_nodes(const nlohmann::json& nodes, const Model& model, const std::string& pointer);
+
+// The shortest edge of an element; where there are none, the least distance of two nodes.
+double spacing_of(std::vector<int> nodes, const Model& model);
 
 struct ChosenPartners {
   std::vector<int> nodes;

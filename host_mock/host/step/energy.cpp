@@ -4,6 +4,8 @@
 #include "base/bytes.hpp"
 #include "step/dof_loops.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -139,21 +141,17 @@ double kinetic_energy(const Model& model, const Dofs& v) {
 }
 
 Vector angular_momentum(const Model& model, const Dofs& u, const Dofs& v) {
+  using Long = Eigen::Matrix<long double, 3, 1>;
   const Eigen::Index d = model.dimension();
-  std::array<long double, 3> sum{};
+  Long sum = Long::Zero(), x = sum, p = sum;
   for (Eigen::Index i = 0; i < u.size(); i += d) {
-    std::array<long double, 3> x{}, p{};
     for (Eigen::Index c = 0; c < d; ++c) {
-      x[static_cast<std::size_t>(c)] = static_cast<long double>(model.position()[i + c]) + u[i + c];
-      p[static_cast<std::size_t>(c)] = static_cast<long double>(model.mass()[i + c]) * v[i + c];
+      x[c] = static_cast<long double>(model.position()[i + c]) + u[i + c];
+      p[c] = static_cast<long double>(model.mass()[i + c]) * v[i + c];
     }
-    for (std::size_t c = 0; c < 3; ++c)
-      sum[c] += x[(c + 1) % 3] * p[(c + 2) % 3] - x[(c + 2) % 3] * p[(c + 1) % 3];
+    sum += x.cross(p);
   }
-  Vector momentum(d == 1 ? 0 : d == 2 ? 1 : 3);
-  for (Eigen::Index c = 0; c < momentum.size(); ++c)
-    momentum[c] = static_cast<double>(sum[static_cast<std::size_t>(d == 2 ? 2 : c)]);
-  return momentum;
+  return sum.tail(d == 1 ? 0 : d == 2 ? 1 : 3).cast<double>();
 }
 
 void EnergyBalance::save(std::ostream& out) const {
