@@ -201,8 +201,9 @@ class Counterpart {
   // The part of that memory which a checkpoint takes along.
   virtual void save(std::ostream& /*out*/) const {}
   virtual void load(std::istream& /*in*/) {}
-  // The law stores energy: contact points have no areas of their own, and bonds may reach far.
-  virtual void expect_stored_energy() {}
+  // The law may hold nodes that left. Where it stores energy, contact points have no areas of their own, and
+  // bonds may reach far.
+  virtual void expect_bonds(bool /*store_energy*/) {}
   // Whether two contacts may have a partner in common.
   virtual bool shares_partners() const { return false; }
   virtual bool keeps_normal() const { return false; }

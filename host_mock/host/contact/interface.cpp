@@ -39,7 +39,9 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
       obstacle_(setup_, dimension_),
       amounts_(law_.info().amount_count) {
   // An area that changes would change the stored energy without work (mortar.md, Areas).
-  if ((info().capabilities & ILAW_CAN_STORE_ENERGY) != 0) setup_.counterpart->expect_stored_energy();
+  const bool store_energy = (info().capabilities & ILAW_CAN_STORE_ENERGY) != 0;
+  if (store_energy || (info().capabilities & ILAW_CAN_ADHERE) != 0)
+    setup_.counterpart->expect_bonds(store_energy);
   if (setup_.heat) heat_.emplace(law_.info(), setup_.heat->obstacle_temperature);
 }
 

@@ -112,8 +112,7 @@ double MeshSurface::gap_bound(int node_index, const Dofs& /*u*/, double /*time*/
   return approach > 0.0 ? approach : -infinity;  // behind the surface by any distance
 }
 
-void MeshSurface::find_contact(int node_index, const Dofs& /*u*/, double /*time*/,
-                               ContactPoint& found) const {
+void MeshSurface::find_contact(int node_index, const Dofs& u, double /*time*/, ContactPoint& found) const {
   std::int32_t facet = 0, place = 0;
   found.clear();
   std::array<double, corner_count> weights{};
@@ -128,6 +127,13 @@ void MeshSurface::find_contact(int node_index, const Dofs& /*u*/, double /*time*
   const Facet& corners = facets_[static_cast<std::size_t>(std::max(facet, 0))];
   for (std::size_t k = 0; k < corner_count; ++k) found.partners.add({corners[k], weights[k]});
   found.is_beyond_border = place == ILAW_PLACE_BEYOND;
+  // The way to a border is no gap along a normal: out of reach, as no node goes that far in a step.
+  if (found.is_beyond_border) found.gap = std::max(found.gap, shortest_edge_);
+  // In front of an edge between two facets, contact is along the line to it.
+  if (place != ILAW_PLACE_BESIDE || !(found.gap > entering_rim * shortest_edge_)) return;
+  Eigen::Vector3d apart = position(node_index, u);
+  for (const Partner& partner : found.partners) apart -= partner.weight * model_.position(partner.node, u);
+  found.normal = apart.normalized();
 }
 
 }  // namespace ilaw::host

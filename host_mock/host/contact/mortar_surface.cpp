@@ -10,10 +10,14 @@
 namespace ilaw::host {
 namespace {
 
-// In shortest edges of the main surface: how far a row slides before its weights are integrated again, and
-// how far beyond the reach facets are listed.
-constexpr double most_slip = 0.02, listed_beyond = 0.1;
-constexpr double least_weight = 1e-15;  // smaller ones are rounding
+// In shortest edges of the main surface: how far a row slides before its weights are integrated again, or a
+// facet that is covered in part, into which another one may slide, and how far beyond the reach facets are
+// listed.
+constexpr double most_slip = 0.02, most_slip_aside = 0.1, listed_beyond = 0.1;
+constexpr double deepest = 0.5;          // in the same, as edge rows have it: facets behind a facet
+constexpr double cosine_of_tilt = 0.55;  // beyond it another face of the body is closer
+constexpr double whole_facet = 0.999;    // part of a facet that counts as covered
+constexpr double least_weight = 1e-15;   // smaller ones are rounding
 
 template <class Number>
 void add_to(std::vector<std::pair<std::int32_t, double>>& sums, std::int32_t key, Number value) {
@@ -113,6 +117,10 @@ double MortarSurface::motion() const {
 // Lists and weights follow from the steps alone, not from the outputs between them.
 bool MortarSurface::find_near(const Dofs& u, const Approach& approach) {
   travelled_ += approach.travelled;
+  if (approach.is_forced) {  // nobody may have asked for a while
+    at_ = model_.position() + u;
+    travelled_ = std::max(travelled_, motion());
+  }
   const bool is_far = is_list_made_ && listed_.empty() && travelled_ + approach.reach < horizon_;
   if (is_far && approach.is_idle && !approach.is_forced) return false;
   MeshSurface::follow(u);
@@ -133,7 +141,7 @@ void MortarSurface::follow(const Dofs& u) {
 }
 
 // With boxes of its own axes the search finds all pairs whose boxes are within the horizon in these axes.
-void MortarSurface::find_candidates() {
+void MortarSurface::find_candidates(double farther) {
   double own = 0.0, main = 0.0;
   for (const Patch& patch : patches_) own = std::max(own, box_slack(corners_of(patch)));
   for (std::size_t k = 0; k < facets().size(); ++k)
@@ -143,7 +151,7 @@ void MortarSurface::find_candidates() {
   asked.corner_count = 4;
   asked.count = static_cast<std::int64_t>(patches_.size());
   asked.points = face_points_.data();
-  asked.distance = horizon_ + own + main;
+  asked.distance = horizon_ + own + main + farther;
   asked.first = first_.data();
   do {
     found_.resize(std::max(found_.size(), static_cast<std::size_t>(first_.back())));
@@ -151,6 +159,36 @@ void MortarSurface::find_candidates() {
     asked.facets = found_.data();
     check_search(ilaw_facets_overlaps(search(), &asked));
   } while (first_.back() > asked.capacity);
+}
+
+// Leaves the facets whose boxes are within the horizon of that of the patch, which is swept outward by a
+// rise.
+MortarSurface::Found MortarSurface::near(std::size_t patch, double rise) {
+  const FacetShape corners = corners_of(patches_[patch]);
+  Eigen::AlignedBox3d face = bounds_of(corners);
+  const Eigen::Vector3d way = rise * corners.double_area().normalized();
+  for (std::size_t k = 0; k < corners.count; ++k) face.extend(corners.at[k] + way);
+  const auto first = found_.begin() + first_[patch];
+  return {first, std::remove_if(first, found_.begin() + first_[patch + 1], [&](std::int32_t facet) {
+            return face.squaredExteriorDistance(bounds_of(corners_of(facet))) > horizon_ * horizon_;
+          })};
+}
+
+// A patch that is tilted to what it is near overlaps with facets below its raised end, which are farther: how
+// far, where that is beyond the horizon.
+double MortarSurface::rise_of(std::size_t patch, const Found& found) const {
+  const FacetShape corners = corners_of(patches_[patch]);
+  const Eigen::Vector3d normal = corners.double_area().normalized();
+  double size = 0.0, steepest = 0.0;
+  for (std::size_t k = 0; k < corners.count; ++k)
+    size = std::max(size, (corners.at[k] - corners.at[0]).norm());
+  size = std::max(size, (corners.at[1] - corners.at[corners.count - 1]).norm());
+  for (auto facet = found.begin; facet != found.end; ++facet) {
+    const Eigen::Vector3d other = corners_of(*facet).double_area().normalized();
+    const double cosine = -normal.dot(other);
+    if (cosine > cosine_of_tilt) steepest = std::max(steepest, normal.cross(other).norm() / cosine);
+  }
+  return size * steepest > horizon_ ? size * steepest : 0.0;
 }
 
 // The largest gap of rows that act on springs, which reach farther than contact.
@@ -174,15 +212,18 @@ void MortarSurface::list_pairs(double reach) {
   at_list_ = at_;
   widest_ = widest_opening();
   horizon_ = std::max(reach, widest_) + listed_beyond * shortest_edge();
-  find_candidates();
+  find_candidates(0.0);
+  rises_.resize(patches_.size());
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const Found found = near(p, 0.0);
+    rises_[p] = found.begin == found.end ? -1.0 : rise_of(p, found);
+  }
+  find_candidates(std::max(0.0, *std::max_element(rises_.begin(), rises_.end())));
   listed_.clear();
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     Patch& patch = patches_[p];
-    const Eigen::AlignedBox3d face = bounds_of(corners_of(patch));
     const auto first = found_.begin() + first_[p];
-    const auto end = std::remove_if(first, found_.begin() + first_[p + 1], [&](std::int32_t facet) {
-      return face.squaredExteriorDistance(bounds_of(corners_of(facet))) > horizon_ * horizon_;
-    });
+    const auto end = rises_[p] < 0.0 ? first : near(p, rises_[p]).end;
     if (!std::equal(first, end, patch.candidates.begin(), patch.candidates.end())) {
       patch.candidates.assign(first, end);
       patch.is_stale = true;
@@ -246,7 +287,12 @@ void MortarSurface::refresh() {
   const double now = listed_.empty() ? 0.0 : past_motion_ + motion();
   for (const std::int32_t p : listed_) {
     Patch& patch = patches_[static_cast<std::size_t>(p)];
-    const bool may_meet = patch.overlap.parts.empty() && now - patch.motion > most_slip * shortest_edge();
+    const double slip = (now - patch.motion) / shortest_edge();
+    const bool meets_none = patch.overlap.parts.empty(),
+               may_meet_more =
+                   patch.candidates.size() > patch.overlap.parts.size() &&
+                   patch.overlap.area.sum() < whole_facet * 0.5 * corners_of(patch).double_area().norm();
+    const bool may_meet = (meets_none && slip > most_slip) || (may_meet_more && slip > most_slip_aside);
     if (!patch.is_stale && !may_meet) continue;
     integrate(patch);
     patch.motion = now;
@@ -259,7 +305,7 @@ void MortarSurface::refresh() {
 }
 
 void MortarSurface::integrate(Patch& patch) {
-  FacetIntegral integral(corners_of(patch), patch.overlap, pieces_);
+  FacetIntegral integral(corners_of(patch), patch.overlap, pieces_, deepest * shortest_edge());
   for (const std::int32_t facet : patch.candidates) integral.add(facet, corners_of(facet));
   integral.finish();
 }
@@ -320,7 +366,6 @@ void MortarSurface::find_contact(int node_index, const Dofs& u, double time, Con
   const Row& row = rows_[static_cast<std::size_t>(node_index)];
   if (row.area == 0.0) {
     MeshSurface::find_contact(node_index, u, time, found);
-    if (found.is_beyond_border) found.gap = std::max(found.gap, horizon_);  // out of reach of contact
     return;
   }
   found.clear();
@@ -332,9 +377,10 @@ void MortarSurface::find_contact(int node_index, const Dofs& u, double time, Con
   for (const Partner& partner : row.partners) found.partners.add(partner);
 }
 
-// A row carries to the border and not beyond: it needs no memory of who was there.
+// A row carries to the border and not beyond: contact needs no memory of who was there.
 bool MortarSurface::is_held(int node_index) const {
-  return rows_[static_cast<std::size_t>(node_index)].area == 0.0 && MeshSurface::is_held(node_index);
+  return bonds_ && rows_[static_cast<std::size_t>(node_index)].area == 0.0 &&
+         MeshSurface::is_held(node_index);
 }
 
 void EdgeRows::find_contact(int node_index, const Dofs& u, double time, ContactPoint& found) const {

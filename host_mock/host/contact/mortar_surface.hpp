@@ -29,7 +29,10 @@ class MortarSurface : public MeshSurface {
   bool find_near(const Dofs& u, const Approach& approach) override;
   double horizon() const override { return horizon_; }
   bool is_held(int node_index) const override;
-  void expect_stored_energy() override { stores_energy_ = true; }
+  void expect_bonds(bool store_energy) override {
+    bonds_ = true;
+    stores_energy_ = store_energy;
+  }
   // After find_near: no facet is that close to another in this step.
   bool is_apart(double reach) const override {
     return is_list_made_ && listed_.empty() && travelled_ + reach < horizon_;
@@ -64,7 +67,12 @@ class MortarSurface : public MeshSurface {
   FacetShape corners_of(std::int32_t main_facet) const;
   double motion() const;
   double widest_opening();
-  void find_candidates();
+  struct Found {
+    std::vector<std::int32_t>::iterator begin, end;  // in found_
+  };
+  void find_candidates(double farther);
+  Found near(std::size_t patch, double rise);
+  double rise_of(std::size_t patch, const Found& found) const;
   void list_pairs(double reach);
   void list_nodes();
   void find_normals();
@@ -89,7 +97,8 @@ class MortarSurface : public MeshSurface {
   std::vector<std::uint8_t> is_listed_;      // by node index
   std::vector<std::int32_t> listed_facets_;  // of the main surface
   std::vector<Eigen::Vector3d> normals_;     // of these, by facet
-  bool is_list_made_ = false, stores_energy_ = false;
+  std::vector<double> rises_;                // of the patches: scratch
+  bool is_list_made_ = false, bonds_ = false, stores_energy_ = false;
   Dofs at_, at_list_;                    // positions, now and when the list was made
   double horizon_ = 0.0, widest_ = 0.0;  // of the list; the largest gap of a bond when it was made
   double travelled_ = 0.0;               // since the surfaces were last compared with the list

@@ -9,8 +9,6 @@
 namespace ilaw::host {
 namespace {
 
-// Facets that stand steeper to each other do not meet as faces.
-constexpr double least_cosine = 0.2;
 // Parts of a facet's area: an overlap that is rounding; an overlap whose test functions are its shape
 // functions, because dual ones would divide by fourth powers of its width, and where they begin to be a
 // blend.
@@ -43,7 +41,8 @@ void for_each_point(const Polygon& polygon, Visit visit) {
 
 }  // namespace
 
-FacetIntegral::FacetIntegral(const FacetShape& corners, FacetOverlap& overlap, std::vector<Polygon>& pieces)
+FacetIntegral::FacetIntegral(const FacetShape& corners, FacetOverlap& overlap, std::vector<Polygon>& pieces,
+                             double deepest)
     : count_(corners.count),
       origin_(corners.at[0]),
       normal_(corners.double_area().normalized()),
@@ -52,6 +51,7 @@ FacetIntegral::FacetIntegral(const FacetShape& corners, FacetOverlap& overlap, s
       outline_(flat(corners)),
       shape_(outline_),
       size_(std::sqrt(outline_.area())),
+      deepest_(deepest),
       pieces_(pieces),
       overlap_(overlap) {
   pieces_.clear();
@@ -77,6 +77,10 @@ void FacetIntegral::add(std::int32_t facet, const FacetShape& corners) {
   const Polygon other = flat(corners);
   const Polygon piece = clipped(other.reversed(), outline_);
   if (piece.size() < 3 || !(piece.area() > least_part * size_ * size_)) return;
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (std::size_t k = 0; k < piece.size(); ++k) middle += piece[k] / static_cast<double>(piece.size());
+  const Eigen::Vector3d below = corners.at[0] - (origin_ + middle[0] * first_ + middle[1] * second_);
+  if (below.dot(outward) > -deepest_ * normal_.dot(outward)) return;
   pieces_.push_back(piece);
   overlap_.parts.push_back({facet, Eigen::Matrix4d::Zero()});
   Eigen::Matrix4d& weights = overlap_.parts.back().weights;

@@ -11,9 +11,13 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace ilaw::host {
+
+// Facets that stand steeper to each other do not meet as faces.
+inline constexpr double least_cosine = 0.2;
 
 // Three or four corners, counterclockwise seen from outside the body.
 struct FacetShape {
@@ -45,8 +49,10 @@ struct FacetOverlap {
 // their centroid, which is short of the border. In between, a blend of both puts it on the border.
 class FacetIntegral {
  public:
-  // Writes into overlap; pieces is scratch. Both keep their memory.
-  FacetIntegral(const FacetShape& corners, FacetOverlap& overlap, std::vector<Polygon>& pieces);
+  // Writes into overlap; pieces is scratch. Both keep their memory. A facet that lies deeper behind this one
+  // is on another side of its body.
+  FacetIntegral(const FacetShape& corners, FacetOverlap& overlap, std::vector<Polygon>& pieces,
+                double deepest = std::numeric_limits<double>::infinity());
   // Adds the overlap with a facet that faces this one; does nothing where there is none.
   void add(std::int32_t facet, const FacetShape& corners);
   void finish();
@@ -61,7 +67,7 @@ class FacetIntegral {
   Eigen::Vector3d origin_, normal_, first_, second_;  // of the plane
   Polygon outline_;
   FlatFacet shape_;
-  double size_;  // square root of the area
+  double size_, deepest_;  // square root of the area
   std::vector<Polygon>& pieces_;
   FacetOverlap& overlap_;  // until the end with the shape functions as test functions
 };

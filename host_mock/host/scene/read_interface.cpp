@@ -126,6 +126,7 @@ void read_gap_offset(const json& interface, double depth, InterfaceSetup& setup,
     const ContactPoint point = setup.counterpart->contact_point(static_cast<int>(k), u, scene.start_time());
     double gap = point.gap - setup.common_gap_offset;
     if (depth > 0.0 && (point.is_beyond_border || !is_initial)) gap = std::min(gap, 0.0);
+    if (depth == 0.0 && point.is_beyond_border) gap = 0.0;  // it does not touch
     setup.own_gap_offsets.push_back(gap - depth);
   }
 }
