@@ -27,6 +27,11 @@ std::vector<PointMass> read_points_file(const std::filesystem::path& file, int d
                   "a file with the columns " + joined(columns_of(dimension)));
   std::vector<PointMass> points;
   for (std::vector<double> row; table.next(row);) {
+    if (table.cells() > row.size())
+      throw mistake(pointer,
+                    "point " + std::to_string(points.size()) + " of " + file.string() + " with " +
+                        std::to_string(table.cells()) + " numbers",
+                    std::to_string(row.size()));
     for (const double value : row)
       if (!std::isfinite(value) || !(row[0] > 0.0) || !(row[1] >= 0.0))
         throw mistake(pointer, "point " + std::to_string(points.size()) + " of " + file.string(),

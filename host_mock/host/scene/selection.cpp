@@ -134,10 +134,12 @@ NodeSet inside(const json& selection, const Model& model, const std::string& poi
   const NodeSet& set = find_set(selection.value("of", "all"), model, false, pointer + "/of");
   const Vector low = read_vector(selection["box"][0], model.dimension(), pointer + "/box/0");
   const Vector high = read_vector(selection["box"][1], model.dimension(), pointer + "/box/1");
+  const double rounding = 1e-12 * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
   std::vector<std::size_t> indices;
   for (std::size_t k = 0; k < set.nodes.size(); ++k) {
     const Vector x = model.position(set.nodes[k]);
-    if ((x.array() >= low.array()).all() && (x.array() <= high.array()).all()) indices.push_back(k);
+    if (((x - low).array() >= -rounding).all() && ((high - x).array() >= -rounding).all())
+      indices.push_back(k);
   }
   if (indices.empty()) throw mistake(pointer + "/box", "no node inside", "at least one");
   return part_of(set, indices);
@@ -146,20 +148,20 @@ NodeSet inside(const json& selection, const Model& model, const std::string& poi
 // ---- partners ----
 
 // A unit vector, or 0 where both centers are one.
-Vector between_centers(const std::vector<int>& nodes, const std::vector<int>& partners, const Model& model) {
+Vector between_centers(const std::vector<int>& nodes, const std::vector<int>& partners, double spacing,
+                       const Model& model) {
   Vector sum = Vector::Zero(model.dimension());
   for (std::size_t k = 0; k < nodes.size(); ++k)
     sum += model.position(partners[k]) - model.position(nodes[k]);
   const double distance = sum.norm() / static_cast<double>(nodes.size());
-  return distance > 1e-6 * shortest_edge(model) ? Vector(sum.normalized())
-                                                : Vector(Vector::Zero(model.dimension()));
+  return distance > 1e-6 * spacing ? Vector(sum.normalized()) : Vector(Vector::Zero(model.dimension()));
 }
 
 // For each node the partner that it faces along a direction; none where some node faces no partner of its
 // own.
 std::vector<int> facing(const std::vector<int>& nodes, const std::vector<int>& partners,
-                        const Vector& direction, const Model& model) {
-  const double near = 0.5 * shortest_edge(model);
+                        const Vector& direction, double spacing, const Model& model) {
+  const double near = 0.5 * spacing;
   const auto across = [&](int node) {
     const Vector x = model.position(node);
     return Vector(x - x.dot(direction) * direction);
@@ -198,6 +200,26 @@ void check_name(const std::string& name, const Model& model, const std::string& 
 
 }  // namespace
 
+double spacing_of(std::vector<int> nodes, const Model& model) {
+  double least = shortest_edge(model);
+  if (std::isfinite(least) || nodes.empty()) return least;
+  Vector low = model.position(nodes.front()), high = low;
+  for (const int node : nodes) {
+    low = low.cwiseMin(model.position(node));
+    high = high.cwiseMax(model.position(node));
+  }
+  Eigen::Index axis = 0;
+  (high - low).maxCoeff(&axis);
+  std::ranges::sort(nodes, {}, [&](int node) { return model.position(node)[axis]; });
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    for (std::size_t j = k + 1; j < nodes.size(); ++j) {
+      const Vector apart = model.position(nodes[j]) - model.position(nodes[k]);
+      if (apart[axis] >= least) break;
+      least = std::min(least, apart.norm());
+    }
+  return least;
+}
+
 NodeSet select_nodes(const json& nodes, const Model& model, const std::string& pointer) {
   if (nodes.is_string()) return find_set(nodes.get<std::string>(), model, false, pointer);
   if (nodes.is_number())
@@ -214,9 +236,10 @@ ChosenPartners select_partners(const json& partners, const std::vector<int>& nod
     throw mistake(pointer, std::to_string(found.nodes.size()) + " nodes",
                   "one for each of the " + std::to_string(nodes.size()) + " nodes of 'nodes'");
   const bool is_ordered = partners.is_array() || partners.contains("near");
-  if (!is_ordered && model.dimension() > 1 && std::isfinite(shortest_edge(model))) {
-    const Vector along = direction ? *direction : between_centers(nodes, found.nodes, model);
-    const std::vector<int> opposite = facing(nodes, found.nodes, along, model);
+  if (!is_ordered && model.dimension() > 1) {
+    const double spacing = spacing_of(found.nodes, model);
+    const Vector along = direction ? *direction : between_centers(nodes, found.nodes, spacing, model);
+    const std::vector<int> opposite = facing(nodes, found.nodes, along, spacing, model);
     found.are_facing = !opposite.empty();
     if (found.are_facing) found.nodes = opposite;
   }

@@ -4,9 +4,11 @@
 #include "base/words.hpp"
 #include "model/elements.hpp"
 #include "scene/json_text.hpp"
+#include "scene/values.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -140,6 +142,7 @@ std::string partner_aside(const Scene& scene, const Interface& interface, const 
   const Model& model = *scene.model;
   if (!has_pairs(interface) || model.dimension() == 1) return "";
   const std::vector<int>& partners = counterpart_of(interface).partners();
+  const double spacing = spacing_of(partners, model);
   for (std::size_t k = 0; k < partners.size(); ++k) {
     const int own = interface.nodes()[k];
     const Vector x = model.position(own) - model.position(partners[k]),
@@ -147,20 +150,22 @@ std::string partner_aside(const Scene& scene, const Interface& interface, const 
                               .contact_point(static_cast<int>(k), model.initial_displacement(), 0.0)
                               .normal;
     const double aside = (x - x.dot(normal) * normal).norm();
-    if (aside > most_edges * shortest_edge(model))
+    if (aside > most_edges * spacing)
       return node(own) + " and its partner " + std::to_string(partners[k]) + " are " + number(aside) +
              " apart along the interface: are both lists in the same order?";
   }
   return "";
 }
 
+bool bonds_at_once(const ilaw_instance_info& info) {
+  return (info.capabilities & ILAW_CAN_ADHERE) && !(info.permissions & ILAW_MAY_SKIP_FRESH);
+}
+
 // A bond is made where the bodies are: across a gap it pulls from afar.
 std::string open_bond(const Scene& scene, const Interface& interface, const json&) {
   constexpr double most_of_edge = 0.1;
   const double edge = shortest_edge(*scene.model);
-  const ilaw_instance_info& info = interface.info();
-  const bool bonds = (info.capabilities & ILAW_CAN_ADHERE) && !(info.permissions & ILAW_MAY_SKIP_FRESH);
-  if (!bonds || interface.setup().birth > 0.0) return "";
+  if (!bonds_at_once(interface.info()) || interface.setup().birth > 0.0) return "";
   const double offset = std::abs(interface.setup().common_gap_offset);
   const double limit = most_of_edge * (std::isfinite(edge) ? std::max(edge, offset) : offset);
   if (!(limit > 0.0)) return "";
@@ -175,6 +180,42 @@ bool has_memory_in_seconds(const ilaw_law& law) {
     if (std::string_view(law.parameters[i]->name) == "memory")
       return std::string_view(law.parameters[i]->unit) == "s";
   return false;
+}
+
+// A node that sticks goes along a chord on a plane, and along a tangent on a round surface.
+std::string fast_turn(const Scene& scene, const Interface& interface, const json& source) {
+  constexpr double most_of_turn = 0.1, most_of_radius = 0.01;
+  if (!source.contains("obstacle")) return "";
+  const double rate = source["obstacle"].value("rate", 0.0), in_a_step = std::abs(rate) * scene.dt,
+               spread = 0.5 * in_a_step * std::abs(rate) * scene.dt * static_cast<double>(scene.steps);
+  if (source["obstacle"]["type"] == "plane")
+    return in_a_step > most_of_turn
+               ? "found " + number(rate) + ", by which the plane turns by " + formatted("%.2g", in_a_step) +
+                     " in a step: friction has the direction of half of it"
+               : "";
+  if (!bonds_at_once(interface.info()) || !(spread > most_of_radius)) return "";
+  return "found " + number(rate) + ": bonds on a round obstacle that turns move away from its axis, by " +
+         formatted("%.2g", spread) + " of their distance until the end, and half as much at half the step";
+}
+
+// Units of seconds tell what a law keeps.
+std::string time_in_prestress(const Scene& scene, const Interface& interface, const json&) {
+  const ilaw_law* law = interface.library().law(interface.setup().law);
+  if (!scene.prestress || !law) return "";
+  const auto is_time = [](const auto* one) { return one->unit && std::string_view(one->unit) == "s"; };
+  const auto& given = interface.setup().arguments.numbers;
+  const bool keeps =
+      std::any_of(law->parameters, law->parameters + law->parameter_count,
+                  [&](const ilaw_parameter* one) {
+                    const auto at = given.find(one->name);
+                    return is_time(one) && at != given.end() && at->second > 0.0;
+                  }) ||
+      std::any_of(law->state_variables, law->state_variables + law->state_variable_count, is_time);
+  return keeps
+             ? "law '" + interface.setup().law +
+                   "' keeps time, and the steps of the prestress count: what it remembers at time 0 depends "
+                   "on how many they were"
+             : "";
 }
 
 // A window that holds hardly more than the impulse of one step.
@@ -198,11 +239,10 @@ std::string unread_temperature(const Scene&, const Interface& interface, const j
          "' does not read: nothing is conducted";
 }
 
-// A box of all nodes gives a node on an edge the area of all its faces, which no face alone has.
-std::string area_of_edges(const Scene& scene, const Interface& interface, const json& source) {
-  const json& nodes = source["nodes"];
-  if (!nodes.is_object() || !nodes.contains("box") || nodes.contains("of")) return "";
-  if (!(interface.info().inputs & ILAW_INPUT_AREA)) return "";
+// Nodes that are not chosen from a face have the area of all faces there, as a vector: on an edge that is the
+// area on no face.
+std::string area_of_edges(const Scene& scene, const Interface& interface, const json&) {
+  if (!(interface.info().inputs & ILAW_INPUT_AREA) || counterpart_of(interface).shares_partners()) return "";
   std::set<std::pair<int, double>> of_faces;
   for (const auto& [name, set] : scene.model->sets())
     for (std::size_t k = 0; k < set.nodes.size() && !set.facets.empty(); ++k)
@@ -210,8 +250,8 @@ std::string area_of_edges(const Scene& scene, const Interface& interface, const 
   if (of_faces.empty()) return "";
   for (std::size_t k = 0; k < interface.nodes().size(); ++k)
     if (const std::pair own{interface.nodes()[k], interface.setup().areas[k]}; !of_faces.contains(own))
-      return node(own.first) + " lies on an edge and has the area of all faces there, " + number(own.second) +
-             ": name one face with \"of\"";
+      return node(own.first) + " lies on an edge, where all faces together have the area " +
+             number(own.second) + ", and no face has it: name one face with \"of\"";
   return "";
 }
 
@@ -244,10 +284,49 @@ constexpr InterfaceWarning interface_warnings[] = {{"", overlap},
                                                    {"/against/nodes", partner_twice},
                                                    {"/against/nodes", partner_aside},
                                                    {"", open_bond},
+                                                   {"/obstacle/rate", fast_turn},
+                                                   {"", time_in_prestress},
                                                    {"/parameters/memory", short_memory},
                                                    {"/obstacle/temperature", unread_temperature},
                                                    {"/nodes", area_of_edges},
                                                    {"/parameters/strength", coarse_zone}};
+
+// ---- loads ----------------------------------------------------------------------------------------------
+
+// Two motions that differ drive one axis of a node: the last one does.
+void warn_of_motions(Scene& scene) {
+  std::map<std::pair<int, int>, std::size_t> driven;
+  const auto motion = [&](std::size_t k) {
+    json load = scene.source["loads"][k];
+    for (const char* key : {"name", "nodes", "axes"}) load.erase(key);
+    return load;
+  };
+  for (std::size_t k = 0; k < scene.loads.size(); ++k)
+    for (const int node_index : scene.loads[k]->prescribed_nodes())
+      for (const int axis : scene.loads[k]->prescribed_axes()) {
+        const auto [at_first, is_first] = driven.emplace(std::pair{node_index, axis}, k);
+        if (is_first || at_first->second == k || motion(at_first->second) == motion(k)) continue;
+        scene.warnings.push_back(at("/loads", k) + ": " + node(node_index) +
+                                 " has another motion along axis " + std::to_string(axis) + " by " +
+                                 at("/loads", at_first->second) + ": the last one drives it");
+        return;
+      }
+}
+
+void warn_of_fields(Scene& scene) {
+  const json fields = scene.source.value("fields", json::object());
+  for (const auto& [name, value] : fields.items()) {
+    const auto reads = [&of = name](const auto& interface) {
+      const ilaw_law* law = interface->library().law(interface->setup().law);
+      return law && std::any_of(law->parameters, law->parameters + law->parameter_count,
+                                [&](const ilaw_parameter* one) {
+                                  return of == one->name && (one->flags & ILAW_FLAG_FIELD);
+                                });
+    };
+    if (std::none_of(scene.interfaces.begin(), scene.interfaces.end(), reads))
+      scene.warnings.push_back("/fields/" + name + ": no law of this scene has a field of that name");
+  }
+}
 
 // ---- bodies ---------------------------------------------------------------------------------------------
 
@@ -281,6 +360,8 @@ void add_warnings(Scene& scene) {
       if (const std::string text = warning.text(scene, *scene.interfaces[i], scene.source["interfaces"][i]);
           !text.empty())
         scene.warnings.push_back(at("/interfaces", i) + warning.key + ": " + text);
+  warn_of_motions(scene);
+  warn_of_fields(scene);
   warn_of_locking(scene);
 }
 

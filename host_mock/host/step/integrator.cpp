@@ -168,19 +168,20 @@ double Integrator::kick(StepTimes step) {
   return largest_speed(v_, d);
 }
 
-// Damping works apart from the other loads. Damping by mass comes first and does not act along driven axes. A
-// motion comes last, so that the holder of a node takes the whole reaction.
+// Damping works apart from the other loads. Damping by mass comes after dampers and does not act along driven
+// axes. A motion comes last, so that the holder of a node takes the whole reaction.
 void Integrator::correct(StepTimes step) {
-  const Dofs undamped = damping_impulse_.size() == 0 ? Dofs() : v_;
   damping_impulse_.setZero();
+  Dofs alone;
   for (const std::size_t k : correcting_) {
+    const bool spares_driven = !loads_[k]->acts_on_driven();
     Dofs& sum = loads_[k]->damps() ? damping_impulse_ : external_impulse_;
-    Dofs& kept = kept_load_impulses_[k];
-    kept.setZero();
-    loads_[k]->correct(step, {u_, v_before_}, v_, kept.size() == 0 ? sum : kept);
-    if (!loads_[k]->acts_on_driven())
-      leave_driven_undamped(loads_, model_.dimension(), undamped, v_, kept.size() == 0 ? sum : kept);
-    if (kept.size() != 0) sum += kept;
+    Dofs& own = kept_load_impulses_[k].size() != 0 ? kept_load_impulses_[k] : spares_driven ? alone : sum;
+    if (&own != &sum) own.setZero(v_.size());
+    const Dofs undamped = spares_driven ? v_ : Dofs();
+    loads_[k]->correct(step, {u_, v_before_}, v_, own);
+    if (spares_driven) leave_driven_undamped(loads_, model_.dimension(), undamped, v_, own);
+    if (&own != &sum) sum += own;
   }
   if (const double step_limit = critical_step(model_, loads_, {u_, v_before_});
       step_limit < model_.critical_step())

@@ -11,11 +11,11 @@ namespace ilaw::host {
 
 namespace {
 
-// Loads that leave driven nodes alone come first, as they undo changes of these nodes. Prescribed
-// motions have the last word, so that positions follow them whatever else acts.
+// Damping by mass takes its part of what dampers have done. Prescribed motions have the last word, so that
+// positions follow them whatever else acts.
 std::vector<std::size_t> order_of_corrections(const Loads& loads) {
   const auto rank = [](const Load& load) {
-    return load.acts_on_driven() ? (load.prescribed_nodes().empty() ? 1 : 2) : 0;
+    return load.acts_on_driven() ? (load.prescribed_nodes().empty() ? 0 : 2) : 1;
   };
   std::vector<std::size_t> order;
   for (const int wanted : {0, 1, 2})

@@ -118,7 +118,7 @@ void Audit::check_momentum(const Dofs& contact) const {
   model.add_internal_forces(u, internal);
   internal *= velocity_step();
   Dofs expected = before + (external + internal).cwiseProduct(inverse_mass_);
-  for (const bool damps_by_mass : {true, false})
+  for (const bool damps_by_mass : {false, true})
     for (const auto& load : scene_.loads) {
       if (!load->corrects() || load->acts_on_driven() == damps_by_mass || !load->prescribed_nodes().empty())
         continue;
