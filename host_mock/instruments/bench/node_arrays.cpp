@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/node_arrays.hpp"
 
-#include "check/trial.hpp"
-
 #include <ilaw/arrays.hpp>
 
 #include <Eigen/Geometry>
@@ -15,6 +13,21 @@ namespace {
 constexpr double time_step = 1e-3;
 // Steps before the first that is measured; in each, a node has the velocity of its next neighbour.
 constexpr std::int64_t steps_before = 16;
+
+std::int64_t components_of(std::uint32_t form, std::int64_t dimension) {
+  switch (form) {
+    case ILAW_DELASSUS_SCALAR:
+      return 1;
+    case ILAW_DELASSUS_TRANSVERSE:
+      return 2;
+    case ILAW_DELASSUS_TRANSVERSE_SPIN:
+      return 5;
+    case ILAW_DELASSUS_DIAGONAL:
+      return dimension;
+    default:
+      return dimension * (dimension + 1) / 2;
+  }
+}
 
 bool has_spins(const BenchCase& bench_case) { return form_of(bench_case) == ILAW_DELASSUS_TRANSVERSE_SPIN; }
 bool gives_motion(const BenchCase& bench_case) { return bench_case.outputs != "none"; }
@@ -33,8 +46,7 @@ std::vector<BatchArray> arrays_of(const BenchLaw& law, const BenchCase& bench_ca
     if (is_given) arrays.push_back({nullptr, output, components});
   };
   read(&Batch::v_free, d, 0);
-  const check::Setup setup{static_cast<std::uint32_t>(d), form_of(bench_case)};
-  read(&Batch::delassus, static_cast<std::int64_t>(setup.form_width()), 0);
+  read(&Batch::delassus, components_of(form_of(bench_case), d), 0);
   read(&Batch::v_previous, d, ILAW_INPUT_V_PREVIOUS);
   read(&Batch::gap, 1, ILAW_INPUT_GAP);
   read(&Batch::area, 1, ILAW_INPUT_AREA);
