@@ -48,12 +48,13 @@ bool ContactSearch::is_due(const StepView& step, double closing_before, double c
     if (!acts_) proximity_.invalidate();
     return due && acts_;
   }
+  const double travelled = ProximityFilter::rounded_up(step.dt * closing_before),
+               ahead = ProximityFilter::rounded_up(step.dt * closing_after);
   if (!acts_) {
+    setup_.counterpart->pass_by(travelled);
     is_forced_ = true;
     return false;
   }
-  const double travelled = ProximityFilter::rounded_up(step.dt * closing_before),
-               ahead = ProximityFilter::rounded_up(step.dt * closing_after);
   const Approach approach{travelled, ahead + largest_offset_, is_forced_, near_.empty()};
   is_forced_ = is_hostile;
   return setup_.counterpart->find_near(step.u, approach);

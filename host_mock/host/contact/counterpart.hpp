@@ -183,6 +183,8 @@ class Counterpart {
   // its list is a new one, and the gap bound up to which nodes are in it.
   virtual bool finds_near() const { return false; }
   virtual bool find_near(const Dofs& /*u*/, const Approach& /*approach*/) { return true; }
+  // A step in which nobody asks, since the interface does not act.
+  virtual void pass_by(double /*travelled*/) {}
   virtual double horizon() const { return 0.0; }
 
   // Null where the nodes meet another body.

@@ -117,18 +117,15 @@ double MortarSurface::motion() const {
 // Lists and weights follow from the steps alone, not from the outputs between them.
 bool MortarSurface::find_near(const Dofs& u, const Approach& approach) {
   travelled_ += approach.travelled;
-  if (approach.is_forced) {  // nobody may have asked for a while
-    at_ = model_.position() + u;
-    travelled_ = std::max(travelled_, motion());
-  }
   const bool is_far = is_list_made_ && listed_.empty() && travelled_ + approach.reach < horizon_;
   if (is_far && approach.is_idle && !approach.is_forced) return false;
   MeshSurface::follow(u);
   at_ = model_.position() + u;
   if (is_far) return approach.is_forced;
-  travelled_ = 0.0;
-  const bool is_due = !is_list_made_ || !(motion() + std::max(approach.reach, widest_) < horizon_);
+  travelled_ = motion();
+  const bool is_due = !is_list_made_ || !(travelled_ + std::max(approach.reach, widest_) < horizon_);
   if (is_due) list_pairs(approach.reach);
+  if (is_due) travelled_ = 0.0;
   refresh();
   return is_due || approach.is_forced;
 }

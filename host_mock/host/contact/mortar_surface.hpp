@@ -27,6 +27,7 @@ class MortarSurface : public MeshSurface {
   double gap_bound(int node_index, const Dofs& u, double time) const override;
   void follow(const Dofs& u) override;
   bool find_near(const Dofs& u, const Approach& approach) override;
+  void pass_by(double travelled) override { travelled_ += travelled; }
   double horizon() const override { return horizon_; }
   bool is_held(int node_index) const override;
   void expect_bonds(bool store_energy) override {
@@ -101,7 +102,7 @@ class MortarSurface : public MeshSurface {
   bool is_list_made_ = false, bonds_ = false, stores_energy_ = false;
   Dofs at_, at_list_;                    // positions, now and when the list was made
   double horizon_ = 0.0, widest_ = 0.0;  // of the list; the largest gap of a bond when it was made
-  double travelled_ = 0.0;               // since the surfaces were last compared with the list
+  double travelled_ = 0.0;               // since the list was made, as far as it is known to matter
   double past_motion_ = 0.0;             // before the list
 };
 
