@@ -14,7 +14,7 @@ namespace {
 // facet that is covered in part, into which another one may slide, and how far beyond the reach facets are
 // listed.
 constexpr double most_slip = 0.02, most_slip_aside = 0.1, listed_beyond = 0.1;
-constexpr double deepest = 0.5;          // in the same, as edge rows have it: facets behind a facet
+constexpr double most_depth = 0.5;       // in the same, as edge rows have it: facets behind a facet
 constexpr double cosine_of_tilt = 0.55;  // beyond it another face of the body is closer
 constexpr double whole_facet = 0.999;    // part of a facet that counts as covered
 constexpr double least_weight = 1e-15;   // smaller ones are rounding
@@ -302,7 +302,7 @@ void MortarSurface::refresh() {
 }
 
 void MortarSurface::integrate(Patch& patch) {
-  FacetIntegral integral(corners_of(patch), patch.overlap, pieces_, deepest * shortest_edge());
+  FacetIntegral integral(corners_of(patch), patch.overlap, pieces_, most_depth * shortest_edge());
   for (const std::int32_t facet : patch.candidates) integral.add(facet, corners_of(facet));
   integral.finish();
 }
