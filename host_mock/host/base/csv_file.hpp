@@ -33,7 +33,6 @@ class CsvFile {
   // The next row, a value per column, NaN where there is none; false after the last.
   bool next(std::vector<double>& row) {
     if (!std::getline(stream_, line_)) return false;
-    cells_ = 1 + static_cast<std::size_t>(std::count(line_.begin(), line_.end(), ','));
     row.assign(names_.size(), std::numeric_limits<double>::quiet_NaN());
     const char* text = line_.c_str();
     for (double& value : row) {
@@ -46,11 +45,12 @@ class CsvFile {
     return true;
   }
   // How many the last row has.
-  std::size_t cells() const { return cells_; }
+  std::size_t cells() const {
+    return 1 + static_cast<std::size_t>(std::count(line_.begin(), line_.end(), ','));
+  }
 
  private:
   std::ifstream stream_;
-  std::size_t cells_ = 0;
   std::string line_;
   std::vector<std::string> names_;
 };

@@ -210,17 +210,27 @@ void MortarSurface::list_pairs(double reach) {
   widest_ = widest_opening();
   horizon_ = std::max(reach, widest_) + listed_beyond * shortest_edge();
   find_candidates(0.0);
+  near_counts_.resize(patches_.size());
   rises_.resize(patches_.size());
+  double highest = 0.0;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const Found found = near(p, 0.0);
-    rises_[p] = found.begin == found.end ? -1.0 : rise_of(p, found);
+    near_counts_[p] = found.end - found.begin;
+    rises_[p] = rise_of(p, found);
+    highest = std::max(highest, rises_[p]);
   }
-  find_candidates(std::max(0.0, *std::max_element(rises_.begin(), rises_.end())));
+  if (highest > 0.0) {
+    find_candidates(highest);
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
+      if (near_counts_[p] == 0) continue;
+      const Found found = near(p, rises_[p]);
+      near_counts_[p] = found.end - found.begin;
+    }
+  }
   listed_.clear();
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     Patch& patch = patches_[p];
-    const auto first = found_.begin() + first_[p];
-    const auto end = rises_[p] < 0.0 ? first : near(p, rises_[p]).end;
+    const auto first = found_.begin() + first_[p], end = first + near_counts_[p];
     if (!std::equal(first, end, patch.candidates.begin(), patch.candidates.end())) {
       patch.candidates.assign(first, end);
       patch.is_stale = true;
@@ -285,11 +295,12 @@ void MortarSurface::refresh() {
   for (const std::int32_t p : listed_) {
     Patch& patch = patches_[static_cast<std::size_t>(p)];
     const double slip = (now - patch.motion) / shortest_edge();
-    const bool meets_none = patch.overlap.parts.empty(),
-               may_meet_more =
-                   patch.candidates.size() > patch.overlap.parts.size() &&
-                   patch.overlap.area.sum() < whole_facet * 0.5 * corners_of(patch).double_area().norm();
-    const bool may_meet = (meets_none && slip > most_slip) || (may_meet_more && slip > most_slip_aside);
+    const auto is_covered_in_part = [&] {
+      return patch.candidates.size() > patch.overlap.parts.size() &&
+             patch.overlap.area.sum() < whole_facet * 0.5 * corners_of(patch).double_area().norm();
+    };
+    const bool may_meet =
+        patch.overlap.parts.empty() ? slip > most_slip : slip > most_slip_aside && is_covered_in_part();
     if (!patch.is_stale && !may_meet) continue;
     integrate(patch);
     patch.motion = now;

@@ -98,11 +98,12 @@ class MortarSurface : public MeshSurface {
   std::vector<std::uint8_t> is_listed_;      // by node index
   std::vector<std::int32_t> listed_facets_;  // of the main surface
   std::vector<Eigen::Vector3d> normals_;     // of these, by facet
-  std::vector<double> rises_;                // of the patches: scratch
+  std::vector<std::ptrdiff_t> near_counts_;  // of the patches, in found_: scratch
+  std::vector<double> rises_;                // the same
   bool is_list_made_ = false, bonds_ = false, stores_energy_ = false;
   Dofs at_, at_list_;                    // positions, now and when the list was made
   double horizon_ = 0.0, widest_ = 0.0;  // of the list; the largest gap of a bond when it was made
-  double travelled_ = 0.0;               // since the list was made, as far as it is known to matter
+  double travelled_ = 0.0;               // a bound of motion() since then
   double past_motion_ = 0.0;             // before the list
 };
 

@@ -295,20 +295,25 @@ constexpr InterfaceWarning interface_warnings[] = {{"", overlap},
 
 // Two motions that differ drive one axis of a node: the last one does.
 void warn_of_motions(Scene& scene) {
-  std::map<std::pair<int, int>, std::size_t> driven;
   const auto motion = [&](std::size_t k) {
     json load = scene.source["loads"][k];
     for (const char* key : {"name", "nodes", "axes"}) load.erase(key);
     return load;
   };
+  std::map<std::pair<int, int>, std::size_t> driven;  // by node and axis
+  std::set<std::pair<std::size_t, std::size_t>> alike;
   for (std::size_t k = 0; k < scene.loads.size(); ++k)
     for (const int node_index : scene.loads[k]->prescribed_nodes())
       for (const int axis : scene.loads[k]->prescribed_axes()) {
-        const auto [at_first, is_first] = driven.emplace(std::pair{node_index, axis}, k);
-        if (is_first || at_first->second == k || motion(at_first->second) == motion(k)) continue;
+        const std::size_t first = driven.emplace(std::pair{node_index, axis}, k).first->second;
+        if (first == k || alike.contains({first, k})) continue;
+        if (motion(first) == motion(k)) {
+          alike.insert({first, k});
+          continue;
+        }
         scene.warnings.push_back(at("/loads", k) + ": " + node(node_index) +
                                  " has another motion along axis " + std::to_string(axis) + " by " +
-                                 at("/loads", at_first->second) + ": the last one drives it");
+                                 at("/loads", first) + ": the last one drives it");
         return;
       }
 }
