@@ -136,7 +136,8 @@ void ContactSearch::look_at(std::size_t chunk, const StepView& step) {
     const double gap =
         !skips ? 0.0
                : setup_.counterpart->known_gap(node_index, step.u, bounds[i] - setup_.gap_offset(node_index));
-    const bool is_near = awake || !skips || may_touch(gap) || setup_.counterpart->is_held(node_index);
+    const bool is_near = !setup_.is_left_out(node_index) &&
+                         (awake || !skips || may_touch(gap) || setup_.counterpart->is_held(node_index));
     is_near_[first + i] = is_near ? 1 : 0;
     near += is_near ? 1 : 0;
     least = gap < least ? gap : least;

@@ -206,6 +206,8 @@ class Counterpart {
   // The law may hold nodes that left. Where it stores energy, contact points have no areas of their own, and
   // bonds may reach far.
   virtual void expect_bonds(bool /*store_energy*/) {}
+  // Whether some of its surface lies over the node's share of a face. Only faces that are integrated know.
+  virtual bool has_overlap(int /*node_index*/) const { return true; }
   // Whether two contacts may have a partner in common.
   virtual bool shares_partners() const { return false; }
   virtual bool keeps_normal() const { return false; }

@@ -42,7 +42,20 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
   const bool store_energy = (info().capabilities & ILAW_CAN_STORE_ENERGY) != 0;
   if (store_energy || (info().capabilities & ILAW_CAN_ADHERE) != 0)
     setup_.counterpart->expect_bonds(store_energy);
+  if (bonds_at_start()) leave_out();
   if (setup_.heat) heat_.emplace(law_.info(), setup_.heat->obstacle_temperature);
+}
+
+// A face may overhang the other one. What has nothing below it at the start has no bond.
+void Interface::leave_out() {
+  const Counterpart& counterpart = *setup_.counterpart;
+  for (std::size_t k = 0; k < setup_.nodes.size(); ++k) {
+    const auto index = static_cast<int>(k);
+    if (counterpart.has_overlap(index)) continue;
+    setup_.left_out.resize(setup_.nodes.size());
+    setup_.left_out[k] =
+        counterpart.contact_point(index, model_.initial_displacement(), 0.0).is_beyond_border ? 1 : 0;
+  }
 }
 
 // With what of the node limits the step, where equations have more than one solution.

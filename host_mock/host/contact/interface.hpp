@@ -39,6 +39,9 @@ class Interface {
   const ilaw_instance_info& info() const { return law_.info(); }
   const std::vector<int>& nodes() const { return setup_.nodes; }
 
+  bool bonds_at_once() const { return law_.bonds_at_once(); }
+  bool bonds_at_start() const { return bonds_at_once() && !(setup_.birth > 0.0); }
+
   // Forgets the amounts that laws gave so far.
   void clear_amounts() { amounts_.assign(amounts_.size(), 0.0); }
   // Of a step, by all of its contacts.
@@ -138,6 +141,7 @@ class Interface {
   friend class CoupledInterface;
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
   void find_delassus(std::size_t contact);
+  void leave_out();
   void choose_active(const StepView& step);
   void total_amounts();
   std::vector<double> first_state(int node_index, const Dofs& u) const;

@@ -35,6 +35,7 @@ struct InterfaceSetup {
   Vector tangent;                       // first tangent of all nodes; empty: none given
   double common_gap_offset = 0.0;       // taken off every gap: thickness, radius
   std::vector<double> own_gap_offsets;  // the same of each node, beside that; empty: none
+  std::vector<std::uint8_t> left_out;   // per node: beside the surface where bonds begin; empty: none
   bool has_driven_nodes = false;        // motions drive some of its nodes or partners: H differs by axis
   bool keeps_all_active = false;        // also contacts that cannot be reached: same results, more work
   std::optional<HeatSetup> heat;
@@ -42,6 +43,9 @@ struct InterfaceSetup {
   // Area of a contact, for its law and its results.
   double area(int node_index, const ContactPoint& point) const {
     return point.area > 0.0 ? area_factor * point.area : areas[static_cast<std::size_t>(node_index)];
+  }
+  bool is_left_out(int node_index) const {
+    return !left_out.empty() && left_out[static_cast<std::size_t>(node_index)] != 0;
   }
   double gap_offset(int node_index) const {
     if (own_gap_offsets.empty()) return common_gap_offset;

@@ -26,6 +26,7 @@ class Law {
   // ILAW_OUTPUT_*: what it gives.
   std::uint32_t outputs() const { return outputs_; }
   bool may_skip_fresh() const { return (info_.permissions & ILAW_MAY_SKIP_FRESH) != 0; }
+  bool bonds_at_once() const { return (info_.capabilities & ILAW_CAN_ADHERE) != 0 && !may_skip_fresh(); }
   bool may_skip_free() const { return (info_.permissions & ILAW_MAY_SKIP_FREE) != 0; }
   // Where in the state axes begin: they turn with the normal from step to step, and with an obstacle.
   std::vector<std::size_t> axes() const;

@@ -30,6 +30,9 @@ class MortarSurface : public MeshSurface {
   void pass_by(double travelled) override { travelled_ += travelled; }
   double horizon() const override { return horizon_; }
   bool is_held(int node_index) const override;
+  bool has_overlap(int node_index) const override {
+    return rows_[static_cast<std::size_t>(node_index)].area > 0.0;
+  }
   void expect_bonds(bool store_energy) override {
     bonds_ = true;
     stores_energy_ = store_energy;

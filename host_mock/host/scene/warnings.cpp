@@ -74,6 +74,7 @@ StartGaps gaps_at_start(const Scene& scene, const Interface& interface, double l
   const Dofs& start = scene.model->initial_displacement();
   interface.setup().counterpart->follow(start);
   for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
+    if (interface.setup().is_left_out(static_cast<int>(k))) continue;
     const double gap = interface.gap_at(static_cast<int>(k), start, scene.start_time());
     if (gap < low) ++found.below;
     if (gap > high) ++found.above;
@@ -157,15 +158,11 @@ std::string partner_aside(const Scene& scene, const Interface& interface, const 
   return "";
 }
 
-bool bonds_at_once(const ilaw_instance_info& info) {
-  return (info.capabilities & ILAW_CAN_ADHERE) && !(info.permissions & ILAW_MAY_SKIP_FRESH);
-}
-
 // A bond is made where the bodies are: across a gap it pulls from afar.
 std::string open_bond(const Scene& scene, const Interface& interface, const json&) {
   constexpr double most_of_edge = 0.1;
   const double edge = shortest_edge(*scene.model);
-  if (!bonds_at_once(interface.info()) || interface.setup().birth > 0.0) return "";
+  if (!interface.bonds_at_start()) return "";
   const double offset = std::abs(interface.setup().common_gap_offset);
   const double limit = most_of_edge * (std::isfinite(edge) ? std::max(edge, offset) : offset);
   if (!(limit > 0.0)) return "";
@@ -173,6 +170,16 @@ std::string open_bond(const Scene& scene, const Interface& interface, const json
   if (gaps.above == 0 || !std::isfinite(gaps.largest)) return "";
   return std::to_string(gaps.above) + " node(s) start bonded across an open gap, " + node(gaps.farthest) +
          " across " + number(gaps.largest);
+}
+
+std::string left_out(const Scene&, const Interface& interface, const json&) {
+  const std::vector<std::uint8_t>& left = interface.setup().left_out;
+  const auto first = std::find(left.begin(), left.end(), 1);
+  if (first == left.end()) return "";
+  return std::to_string(std::count(first, left.end(), 1)) +
+         " node(s) have nothing of the other face below them at the start, " +
+         node(interface.nodes()[static_cast<std::size_t>(first - left.begin())]) +
+         " first: they have no bond, and no contact by this interface";
 }
 
 bool has_memory_in_seconds(const ilaw_law& law) {
@@ -193,7 +200,7 @@ std::string fast_turn(const Scene& scene, const Interface& interface, const json
                ? "found " + number(rate) + ", by which the plane turns by " + formatted("%.2g", in_a_step) +
                      " in a step: friction has the direction of half of it"
                : "";
-  if (!bonds_at_once(interface.info()) || !(spread > most_of_radius)) return "";
+  if (!interface.bonds_at_once() || !(spread > most_of_radius)) return "";
   return "found " + number(rate) + ": bonds on a round obstacle that turns move away from its axis, by " +
          formatted("%.2g", spread) + " of their distance until the end, and half as much at half the step";
 }
@@ -241,18 +248,24 @@ std::string unread_temperature(const Scene&, const Interface& interface, const j
 
 // Nodes that are not chosen from a face have the area of all faces there, as a vector: on an edge that is the
 // area on no face.
-std::string area_of_edges(const Scene& scene, const Interface& interface, const json&) {
-  if (!(interface.info().inputs & ILAW_INPUT_AREA) || counterpart_of(interface).shares_partners()) return "";
+std::string area_of_edges(const Model& model, const std::vector<int>& nodes, const std::vector<double>& areas,
+                          double factor) {
   std::set<std::pair<int, double>> of_faces;
-  for (const auto& [name, set] : scene.model->sets())
+  for (const auto& [name, set] : model.sets())
     for (std::size_t k = 0; k < set.nodes.size() && !set.facets.empty(); ++k)
-      of_faces.emplace(set.nodes[k], interface.setup().area_factor * set.areas[k]);
+      of_faces.emplace(set.nodes[k], factor * set.areas[k]);
   if (of_faces.empty()) return "";
-  for (std::size_t k = 0; k < interface.nodes().size(); ++k)
-    if (const std::pair own{interface.nodes()[k], interface.setup().areas[k]}; !of_faces.contains(own))
-      return node(own.first) + " lies on an edge, where all faces together have the area " +
-             number(own.second) + ", and no face has it: name one face with \"of\"";
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    if (!of_faces.contains({nodes[k], areas[k]}))
+      return node(nodes[k]) + " lies on an edge, where all faces together have the area " + number(areas[k]) +
+             ", and no face has it: name one face with \"of\"";
   return "";
+}
+
+std::string area_of_law(const Scene& scene, const Interface& interface, const json&) {
+  if (!(interface.info().inputs & ILAW_INPUT_AREA) || counterpart_of(interface).shares_partners()) return "";
+  const InterfaceSetup& setup = interface.setup();
+  return area_of_edges(*scene.model, setup.nodes, setup.areas, setup.area_factor);
 }
 
 // Turon, Davila, Camanho, Costa, Engineering Fracture Mechanics 74 (2007): the failure zone of length
@@ -284,11 +297,12 @@ constexpr InterfaceWarning interface_warnings[] = {{"", overlap},
                                                    {"/against/nodes", partner_twice},
                                                    {"/against/nodes", partner_aside},
                                                    {"", open_bond},
+                                                   {"", left_out},
                                                    {"/obstacle/rate", fast_turn},
                                                    {"", time_in_prestress},
                                                    {"/parameters/memory", short_memory},
                                                    {"/obstacle/temperature", unread_temperature},
-                                                   {"/nodes", area_of_edges},
+                                                   {"/nodes", area_of_law},
                                                    {"/parameters/strength", coarse_zone}};
 
 // ---- loads ----------------------------------------------------------------------------------------------
@@ -316,6 +330,17 @@ void warn_of_motions(Scene& scene) {
                                  at("/loads", first) + ": the last one drives it");
         return;
       }
+}
+
+void warn_of_heated_edges(Scene& scene) {
+  const json loads = scene.source.value("loads", json::array());
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    if (loads[k]["type"] != "heat_flux") continue;
+    const std::string pointer = at("/loads", k) + "/nodes";
+    const NodeSet set = select_nodes(loads[k].value("nodes", json("all")), *scene.model, pointer);
+    const std::string text = area_of_edges(*scene.model, set.nodes, set.areas, 1.0);
+    if (!text.empty()) scene.warnings.push_back(pointer + ": " + text);
+  }
 }
 
 void warn_of_fields(Scene& scene) {
@@ -366,6 +391,7 @@ void add_warnings(Scene& scene) {
           !text.empty())
         scene.warnings.push_back(at("/interfaces", i) + warning.key + ": " + text);
   warn_of_motions(scene);
+  warn_of_heated_edges(scene);
   warn_of_fields(scene);
   warn_of_locking(scene);
 }
