@@ -1,6 +1,6 @@
 // Integrals over overlaps of facets against closed forms: areas, sums, linear fields, dual functions, and the
 // places of rows at borders.
-#include "mortar/facet_overlap.hpp"
+#include "surface/facet_overlap.hpp"
 
 #include <gtest/gtest.h>
 

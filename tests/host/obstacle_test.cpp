@@ -1,9 +1,9 @@
 // Obstacles against closed forms of their distances; prescribed motion and damping.
 #include "model/obstacle.hpp"
 
-#include "contact/counterpart.hpp"
 #include "host_runner.hpp"
 #include "model/points.hpp"
+#include "surface/counterpart.hpp"
 
 #include <memory>
 #include <numeric>

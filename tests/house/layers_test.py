@@ -9,7 +9,7 @@ ROOT = Path(__file__).resolve().parents[2]
 KIT = ROOT / "api/include/ilaw/kit"
 DEVICE = ROOT / "api/device/kit/ilaw/device"
 # The folders of host_mock from the ground up: each may include itself and those before it.
-FLOORS = ["host/base", "host/mortar", "host/model", "host/contact", "host/step", "host/scene", "host/results",
+FLOORS = ["host/base", "host/model", "host/surface", "host/contact", "host/step", "host/scene", "host/results",
           "instruments/audit", "instruments/stress", "instruments/bench", "cli"]  # fmt: skip
 FLOOR = {Path(floor).name: k for k, floor in enumerate(FLOORS)}  # as includes name it
 # The public headers of the kit, from the ground up; those of a room may include each other, not in a circle.
@@ -131,8 +131,8 @@ class Layers(unittest.TestCase):
             ("api/loader/library.cpp", "ilaw/kit.hpp", False, False),
             ("api/search/search.cpp", "ilaw/search.h", False, True),
             ("api/search/search.cpp", "ilaw/coupled.h", False, False),
-            ("host_mock/host/contact/mortar_surface.cpp", "mortar/facet_overlap.hpp", True, True),
-            ("host_mock/host/mortar/polygon.cpp", "model/model.hpp", True, False),
+            ("host_mock/host/surface/mortar_surface.cpp", "model/model.hpp", True, True),
+            ("host_mock/host/surface/mesh_surface.cpp", "contact/interface.hpp", True, False),
             ("api/include/ilaw/kit/plugin.hpp", "ilaw/kit/detail/instance.hpp", False, True),
             ("plugins/tie/tie.cpp", "ilaw/kit/detail/gather.hpp", False, False),
             ("plugins/tie/tie.cpp", "ilaw/kit/window.hpp", False, True),

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "base/table.hpp"
-#include "contact/counterpart.hpp"
 #include "contact/law_arguments.hpp"
+#include "surface/counterpart.hpp"
 
 #include <cstdint>
 #include <limits>

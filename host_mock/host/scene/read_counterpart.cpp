@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/readers.hpp"
 
-#include "contact/counterpart.hpp"
-#include "contact/mesh_surface.hpp"
-#include "contact/mortar_surface.hpp"
 #include "scene/json_text.hpp"
 #include "scene/values.hpp"
+#include "surface/counterpart.hpp"
+#include "surface/mesh_surface.hpp"
+#include "surface/mortar_surface.hpp"
 
 #include <algorithm>
 #include <optional>

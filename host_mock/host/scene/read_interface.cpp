@@ -2,12 +2,12 @@
 #include "scene/readers.hpp"
 
 #include "base/words.hpp"
-#include "contact/mortar_surface.hpp"
 #include "scene/arguments.hpp"
 #include "scene/json_text.hpp"
 #include "scene/scene.hpp"
 #include "scene/sharp_nodes.hpp"
 #include "scene/values.hpp"
+#include "surface/mortar_surface.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "contact/counterpart.hpp"
+#include "surface/counterpart.hpp"
 
 #include <cstddef>
 #include <cstdint>

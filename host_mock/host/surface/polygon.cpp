@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mortar/polygon.hpp"
+#include "surface/polygon.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "contact/counterpart.hpp"
+#include "surface/counterpart.hpp"
 
 #include <ilaw/search.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "contact/counterpart.hpp"
+#include "surface/counterpart.hpp"
 
 #include <optional>
 

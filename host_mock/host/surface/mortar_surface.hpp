@@ -1,10 +1,10 @@
 // mortar_surface.hpp - facets of one body against facets of another: one constraint for each secondary node,
-// with weights that are integrated over the overlap of both faces (mortar/facet_overlap.hpp).
+// with weights that are integrated over the overlap of both faces (facet_overlap.hpp).
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "contact/mesh_surface.hpp"
-#include "mortar/facet_overlap.hpp"
+#include "surface/facet_overlap.hpp"
+#include "surface/mesh_surface.hpp"
 
 #include <Eigen/Core>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mortar/facet_overlap.hpp"
+#include "surface/facet_overlap.hpp"
 
 #include <Eigen/LU>
 

@@ -4,7 +4,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mortar/polygon.hpp"
+#include "surface/polygon.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "contact/mesh_surface.hpp"
+#include "surface/mesh_surface.hpp"
 
 #include "base/bytes.hpp"
 
