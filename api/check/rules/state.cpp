@@ -9,8 +9,8 @@
 namespace ilaw::check {
 namespace {
 
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b, std::size_t node,
-               std::size_t width) {
+bool same_bits_at(const std::vector<double>& a, const std::vector<double>& b, std::size_t node,
+                  std::size_t width) {
   return width == 0 || std::memcmp(&a[node * width], &b[node * width], width * sizeof(double)) == 0;
 }
 
@@ -47,7 +47,7 @@ void draw_borderline(Inputs& in, Draw& draw) {
 void expect_left_alone(const Trial& trial, const Inputs& in, std::size_t i, const std::vector<double>& state,
                        const Results& found) {
   expect_nothing(trial, in, found, i, "out of reach");
-  if (!same_bits(state, found.state, i, trial.info.state_size))
+  if (!same_bits_at(state, found.state, i, trial.info.state_size))
     fail(trial, in, i, "out of reach, its state changed", "the same bits of state");
   if (!found.status.empty() && found.status[i] != ILAW_FREE && found.status[i] != ILAW_BAD_INPUT)
     fail(trial, in, i, joined("out of reach, status ", found.status[i]), "ILAW_FREE (0)");
@@ -122,8 +122,8 @@ void expect_contained(const Trial& trial, const Inputs& in, Arrays& arrays, cons
   };
   for (std::size_t i = 0; i < in.count; ++i) {
     if (i == node) continue;
-    if (!same_bits(good.impulse, found.impulse, i, d) || !same_bits(good.state, found.state, i, size) ||
-        !same_bits(good.moment, found.moment, i, moment_width))
+    if (!same_bits_at(good.impulse, found.impulse, i, d) || !same_bits_at(good.state, found.state, i, size) ||
+        !same_bits_at(good.moment, found.moment, i, moment_width))
       say(i, joined("node ", i, " changed"), "as ever at the other nodes");
   }
   for (std::size_t c = 0; c < d; ++c)
@@ -136,14 +136,14 @@ void expect_contained(const Trial& trial, const Inputs& in, Arrays& arrays, cons
   if (!std::isfinite(value) && !refused && !is_history(trial, entry))
     say(node, joined("code ", found.code), "ILAW_BAD_NODES (1)");
   if (!std::isfinite(value) && !refused &&
-      !(same_bits(good.impulse, found.impulse, node, d) &&
-        same_bits(good.moment, found.moment, node, moment_width)))
+      !(same_bits_at(good.impulse, found.impulse, node, d) &&
+        same_bits_at(good.moment, found.moment, node, moment_width)))
     say(node, "an impulse that depends on it",
         "bad input, or the same impulse if this step does not read it");
   if (!refused) return;
   for (std::size_t c = 0; c < d; ++c)
     if (found.impulse[node * d + c] != 0.0 || m[c] != 0.0) say(node, "bad input with an impulse", "r = 0");
-  if (!same_bits(foreign, found.state, node, size))
+  if (!same_bits_at(foreign, found.state, node, size))
     say(node, "bad input with another state", "state_out = state_in");
 }
 
