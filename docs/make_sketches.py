@@ -132,7 +132,7 @@ def layers():
     box(axes, 0.2, 2.55, 4.4, 1.85, "", PALE_BLUE, BLUE)
     axes.text(2.4, 4.2, "host_mock: the program ilaw", ha="center", va="center", fontweight="bold", color=DARK)
     rooms = ("cli: a file per command", "instruments: audit, bench, stress",
-             "host: results, scene, step, contact, model, mortar, base")
+             "host: results, scene, step, contact, surface, model, base")
     for k, text in enumerate(rooms):
         box(axes, 0.4, 3.58 - 0.46 * k, 4.0, 0.4, text, "white", BLUE, 9.5)
     drawn = set(re.findall(r"\w+", " ".join(rooms)))

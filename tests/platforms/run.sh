@@ -43,7 +43,7 @@ text = (host / "host/scene/schema_text.cpp.in").read_text()
 print(text.replace("@ILAW_SCENE_SCHEMA@", (host / "schema/scene.schema.json").read_text()))
 PYTHON
 include() { printf '#include "%s"\n' "${@/#/$PWD/}"; }
-include host_mock/host/{base,mortar,model,step,contact}/*.cpp >"$build/host/step.cpp"
+include host_mock/host/{base,model,surface,step,contact}/*.cpp >"$build/host/step.cpp"
 include $(ls host_mock/host/scene/*.cpp | grep -vE '/(mesh_file|validation).cpp') host_mock/host/results/state_hash.cpp \
   tests/platforms/state_hashes.cpp >"$build/host/scene.cpp"
 include host_mock/host/scene/validation.cpp >"$build/host/validation.cpp"

@@ -41,7 +41,7 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
   // An area that changes would change the stored energy without work (mortar.md, Areas).
   const bool store_energy = (info().capabilities & ILAW_CAN_STORE_ENERGY) != 0;
   if (store_energy || (info().capabilities & ILAW_CAN_ADHERE) != 0)
-    setup_.counterpart->expect_bonds(store_energy);
+    setup_.counterpart->expect_bonds(store_energy, bonds_at_once());
   if (bonds_at_start()) leave_out();
   if (setup_.heat) heat_.emplace(law_.info(), setup_.heat->obstacle_temperature);
 }

@@ -111,8 +111,9 @@ class Interface {
   // ---- for outputs, by node_index, whether active or not ----
   double gap_at(int node_index, const Dofs& u, double time) const {
     const Counterpart& counterpart = *setup_.counterpart;
+    const ContactPoint point = counterpart.contact_point(node_index, u, time);
     return counterpart.known_gap(
-        node_index, u, counterpart.contact_point(node_index, u, time).gap - setup_.gap_offset(node_index));
+        node_index, u, (point.behind > 0.0 ? -point.behind : point.gap) - setup_.gap_offset(node_index));
   }
   // Whether a node has no gap or no normal: so far out lengths overflow, and edges of facets vanish.
   bool has_lost_a_node(const Dofs& u, double time) const;

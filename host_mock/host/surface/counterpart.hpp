@@ -68,6 +68,7 @@ struct ContactPoint {
   double own_weight = 1.0;
   std::size_t own_partners = 0;  // the first ones, of the node's own body
   double area = 0.0;             // overlap of this step; 0: use the area of the setup
+  double behind = 0.0;           // by which it lies behind a surface that it does not meet for that reason
 
   // As it was made, with the memory of its partners kept.
   void clear() {
@@ -75,7 +76,7 @@ struct ContactPoint {
     is_beyond_border = false;
     own_weight = 1.0;
     own_partners = 0;
-    area = 0.0;
+    area = behind = 0.0;
   }
   // Calls visit(node, weight) for the contact's own node and its partners.
   template <class Visit>
@@ -203,9 +204,9 @@ class Counterpart {
   // The part of that memory which a checkpoint takes along.
   virtual void save(std::ostream& /*out*/) const {}
   virtual void load(std::istream& /*in*/) {}
-  // The law may hold nodes that left. Where it stores energy, contact points have no areas of their own, and
-  // bonds may reach far.
-  virtual void expect_bonds(bool /*store_energy*/) {}
+  // The law may hold nodes that left, or all of them at once. Where it stores energy, contact points have no
+  // areas of their own, and bonds may reach far.
+  virtual void expect_bonds(bool /*store_energy*/, bool /*at_once*/) {}
   // Whether some of its surface lies over the node's share of a face. Only faces that are integrated know.
   virtual bool has_overlap(int /*node_index*/) const { return true; }
   // Whether two contacts may have a partner in common.

@@ -43,6 +43,7 @@ class MeshSurface : public Counterpart {
   const std::vector<Facet>& facets() const { return facets_; }
   ilaw_facets* search() const { return search_.get(); }
   double shortest_edge() const { return shortest_edge_; }
+  void hold_all() { held_.assign(held_.size(), std::uint8_t{1}); }
 
  private:
   // Whether no node can be in reach in this step, as others know.

@@ -95,13 +95,14 @@ void MortarSurface::find_candidates(double farther) {
   } while (first_.back() > asked.capacity);
 }
 
-// Leaves the facets whose boxes are within the horizon of that of the patch, which is swept outward by a
-// rise.
-MortarSurface::Found MortarSurface::near(std::size_t patch, double rise) {
+// Leaves the facets whose boxes are within the horizon of that of the patch, which is swept outward by a rise
+// and inward by a depth.
+MortarSurface::Found MortarSurface::near(std::size_t patch, double rise, double depth) {
   const FacetShape corners = corners_of(patches_[patch]);
   Eigen::AlignedBox3d face = bounds_of(corners);
-  const Eigen::Vector3d way = rise * corners.double_area().normalized();
-  for (std::size_t k = 0; k < corners.count; ++k) face.extend(corners.at[k] + way);
+  const Eigen::Vector3d normal = corners.double_area().normalized();
+  for (std::size_t k = 0; k < corners.count; ++k)
+    for (const double way : {rise, -depth}) face.extend(corners.at[k] + way * normal);
   const auto first = found_.begin() + first_[patch];
   return {first, std::remove_if(first, found_.begin() + first_[patch + 1], [&](std::int32_t facet) {
             return face.squaredExteriorDistance(bounds_of(corners_of(facet))) > horizon_ * horizon_;
@@ -125,42 +126,45 @@ double MortarSurface::rise_of(std::size_t patch, const Found& found) const {
   return size * steepest > horizon_ ? size * steepest : 0.0;
 }
 
-// The largest gap of rows that act on springs, which reach farther than contact.
-double MortarSurface::widest_opening() {
-  double widest = 0.0;
-  if (!stores_energy_) return widest;
+// Finds the largest gap of rows that act on springs, which reach farther than contact; returns the largest
+// overlap of rows.
+double MortarSurface::find_reach_of_rows() {
+  widest_ = 0.0;
+  double deepest = is_list_made_ ? 0.0 : most_depth * shortest_edge();  // bodies may overlap at the start
   find_normals();
   for (const std::int32_t k : listed_nodes_) {
-    if (!MeshSurface::is_held(k)) continue;
     locate(static_cast<std::size_t>(k));
     const Row& row = rows_[static_cast<std::size_t>(k)];
-    if (row.area > 0.0) widest = std::max(widest, row.apart.dot(row.normal));
+    if (row.area == 0.0) continue;
+    const double gap = row.apart.dot(row.normal);
+    deepest = std::max(deepest, -gap);
+    if (stores_energy_ && MeshSurface::is_held(k)) widest_ = std::max(widest_, gap);
   }
-  return widest;
+  return std::min(deepest, most_depth * shortest_edge());
 }
 
 // Boxes of the search are those of an earlier step, with a margin: the list must not depend on which.
 void MortarSurface::list_pairs(double reach) {
   if (is_list_made_) past_motion_ += motion();
+  const double depth = find_reach_of_rows();
   is_list_made_ = true;
   at_list_ = at_;
-  widest_ = widest_opening();
   horizon_ = std::max(reach, widest_) + listed_beyond * shortest_edge();
-  find_candidates(0.0);
+  find_candidates(depth);
   near_counts_.resize(patches_.size());
   rises_.resize(patches_.size());
   double highest = 0.0;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
-    const Found found = near(p, 0.0);
+    const Found found = near(p, 0.0, depth);
     near_counts_[p] = found.end - found.begin;
     rises_[p] = rise_of(p, found);
     highest = std::max(highest, rises_[p]);
   }
   if (highest > 0.0) {
-    find_candidates(highest);
+    find_candidates(std::max(highest, depth));
     for (std::size_t p = 0; p < patches_.size(); ++p) {
       if (near_counts_[p] == 0) continue;
-      const Found found = near(p, rises_[p]);
+      const Found found = near(p, rises_[p], depth);
       near_counts_[p] = found.end - found.begin;
     }
   }

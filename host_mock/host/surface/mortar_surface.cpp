@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace ilaw::host {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 // In shortest edges of the main surface: how far a row slides before its weights are integrated again, or a
 // facet that is covered in part, into which another one may slide.
 constexpr double most_slip = 0.02, most_slip_aside = 0.1;
-constexpr double most_depth = 0.5;      // in the same, as edge rows have it: facets behind a facet
 constexpr double whole_facet = 0.999;   // part of a facet that counts as covered
 constexpr double least_weight = 1e-15;  // smaller ones are rounding
 
@@ -180,6 +180,11 @@ void MortarSurface::find_contact(int node_index, const Dofs& u, double time, Con
   const Row& row = rows_[static_cast<std::size_t>(node_index)];
   if (row.area == 0.0) {
     MeshSurface::find_contact(node_index, u, time, found);
+    const bool is_listed = is_listed_[static_cast<std::size_t>(node_index)] != 0;
+    const double deepest = is_listed ? most_depth * shortest_edge() : 0.0;
+    if (is_held(node_index) || !(found.gap < -deepest)) return;
+    found.behind = -std::exchange(found.gap, horizon_);
+    found.is_beyond_border = true;
     return;
   }
   found.clear();

@@ -14,6 +14,10 @@
 
 namespace ilaw::host {
 
+// In shortest edges of the main surface, as edge rows have it: what lies deeper behind a facet is in front of
+// another side of its body.
+inline constexpr double most_depth = 0.5;
+
 // The nodes of the interface are the secondary ones. A row acts along the normal of the main surface,
 // averaged by the test function: with a normal of the secondary surface, tilted faces would gain energy.
 // Weights are kept until the row has slid by a small part of an edge; the gap and the normal always follow
@@ -33,9 +37,10 @@ class MortarSurface : public MeshSurface {
   bool has_overlap(int node_index) const override {
     return rows_[static_cast<std::size_t>(node_index)].area > 0.0;
   }
-  void expect_bonds(bool store_energy) override {
+  void expect_bonds(bool store_energy, bool at_once) override {
     bonds_ = true;
     stores_energy_ = store_energy;
+    if (at_once) hold_all();
   }
   // After find_near: no facet is that close to another in this step.
   bool is_apart(double reach) const override {
@@ -70,12 +75,12 @@ class MortarSurface : public MeshSurface {
   FacetShape corners_of(const Patch& patch) const;
   FacetShape corners_of(std::int32_t main_facet) const;
   double motion() const;
-  double widest_opening();
+  double find_reach_of_rows();
   struct Found {
     std::vector<std::int32_t>::iterator begin, end;  // in found_
   };
   void find_candidates(double farther);
-  Found near(std::size_t patch, double rise);
+  Found near(std::size_t patch, double rise, double depth);
   double rise_of(std::size_t patch, const Found& found) const;
   void list_pairs(double reach);
   void list_nodes();
