@@ -147,8 +147,9 @@ struct normal_spring {
   template <class Function>
   static V impulse_where(mask active, Function f) {
     constexpr int most_doublings = 64;
-    constexpr double least = std::numeric_limits<double>::min();  // below it f jumps at 0, if its bound is not
-    constexpr double least_bound = 0x1p-800;                      // so small itself: that is no force
+    constexpr double least =
+        std::numeric_limits<double>::min();   // below it f jumps at 0, if its bound is not
+    constexpr double least_bound = 0x1p-800;  // so small itself: that is no force
     V high = f(V(0.0));
     active = active & (high > least_bound);
     mask rises = active;
