@@ -41,8 +41,8 @@ struct Relation {
 std::span<const Relation> relations();
 
 // Masses, positions, velocities, loads and radii off by one rounding: what follows from that tells how well a
-// scene determines its motion. Places are off by a rounding of the farthest one; if that is 0, each by its
-// own, so that zeros stay.
+// scene determines its motion. Places are off by a rounding of the farthest one, or by more than those that
+// the host takes for none (even seeds); if that is 0, each by its own, so that zeros stay.
 nlohmann::json nudged(nlohmann::json source, double farthest, std::uint64_t seed);
 
 }  // namespace ilaw::host
