@@ -24,9 +24,8 @@ namespace {
 using nlohmann::json;
 
 // In shortest edges of the face: how far behind the other face edge rows hold its nodes, so that faces on
-// each other do not touch them (an edge of the other face is right to 0.01), and how deep a node cannot have
-// sunk.
-constexpr double edge_depth = 0.02, deepest_edge = 0.5;
+// each other do not touch them (an edge of the other face is right to 0.01).
+constexpr double edge_depth = 0.02;
 
 // By node, the axes along which motions drive it.
 std::map<int, std::set<int>> driven_axes(const Loads& loads) {
@@ -242,7 +241,7 @@ std::unique_ptr<Interface> make_edge_rows(std::size_t number, const Scene& scene
   if (interface.contains("parameters"))
     give_values(interface["parameters"], edges.set.nodes, own.nodes, *scene.model);
   auto counterpart = std::make_unique<EdgeRows>(*scene.model, edges.set.nodes, own,
-                                                deepest_edge * edges.shortest_edge, *faces);
+                                                most_depth * edges.shortest_edge, *faces);
   return make_interface(interface, number, scene, edges.set, std::move(counterpart), made.name(),
                         edge_depth * edges.shortest_edge);
 }
