@@ -74,6 +74,14 @@ void MortarSurface::follow(const Dofs& u) {
   refresh();
 }
 
+// Between the boxes of both surfaces.
+double MortarSurface::clearance() const {
+  Eigen::AlignedBox3d own, main;
+  for (const int node : nodes_) own.extend(place(node));
+  for (const int node : partners()) main.extend(place(node));
+  return own.exteriorDistance(main);
+}
+
 // With boxes of its own axes the search finds all pairs whose boxes are within the horizon in these axes.
 void MortarSurface::find_candidates(double farther) {
   double own = 0.0, main = 0.0;
@@ -150,8 +158,27 @@ void MortarSurface::list_pairs(double reach) {
   is_list_made_ = true;
   at_list_ = at_;
   horizon_ = std::max(reach, widest_) + listed_beyond * shortest_edge();
+  near_counts_.assign(patches_.size(), 0);
+  const double apart = clearance();
+  if (apart > horizon_ + depth)
+    horizon_ = apart;
+  else
+    find_near_counts(depth);
+  listed_.clear();
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    Patch& patch = patches_[p];
+    const auto first = found_.begin() + first_[p], end = first + near_counts_[p];
+    if (!std::equal(first, end, patch.candidates.begin(), patch.candidates.end())) {
+      patch.candidates.assign(first, end);
+      patch.is_stale = true;
+    }
+    if (first != end || patch.is_stale) listed_.push_back(static_cast<std::int32_t>(p));
+  }
+  list_nodes();
+}
+
+void MortarSurface::find_near_counts(double depth) {
   find_candidates(depth);
-  near_counts_.resize(patches_.size());
   rises_.resize(patches_.size());
   double highest = 0.0;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
@@ -168,17 +195,6 @@ void MortarSurface::list_pairs(double reach) {
       near_counts_[p] = found.end - found.begin;
     }
   }
-  listed_.clear();
-  for (std::size_t p = 0; p < patches_.size(); ++p) {
-    Patch& patch = patches_[p];
-    const auto first = found_.begin() + first_[p], end = first + near_counts_[p];
-    if (!std::equal(first, end, patch.candidates.begin(), patch.candidates.end())) {
-      patch.candidates.assign(first, end);
-      patch.is_stale = true;
-    }
-    if (first != end || patch.is_stale) listed_.push_back(static_cast<std::int32_t>(p));
-  }
-  list_nodes();
 }
 
 void MortarSurface::list_nodes() {

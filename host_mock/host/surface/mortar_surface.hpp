@@ -79,7 +79,9 @@ class MortarSurface : public MeshSurface {
   struct Found {
     std::vector<std::int32_t>::iterator begin, end;  // in found_
   };
+  double clearance() const;
   void find_candidates(double farther);
+  void find_near_counts(double depth);
   Found near(std::size_t patch, double rise, double depth);
   double rise_of(std::size_t patch, const Found& found) const;
   void list_pairs(double reach);
