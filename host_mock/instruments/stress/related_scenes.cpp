@@ -386,7 +386,6 @@ constexpr Relation all_relations[] = {
 std::span<const Relation> relations() { return all_relations; }
 
 json nudged(json source, double farthest, std::uint64_t seed) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   const double off = (seed % 2 == 0 ? 40.0 : 2.0) * 0x1p-52;  // the host closes gaps of 16
   give_default(source, "bars", "start", 0.0);
   give_default(source, "blocks", "corner", {0.0, 0.0, 0.0});
@@ -397,9 +396,8 @@ json nudged(json source, double farthest, std::uint64_t seed) {
     const bool is_size = quantity.form == Form::vector || quantity.mass != 0.0;
     if (!is_radius && !(moves && (is_place || is_size))) return;
     for_numbers(value, [&](double old) {
-      const double to = draw.chance(0.5) ? infinity : -infinity;
-      if (is_place && farthest > 0.0) return old + std::copysign(off * farthest, to);
-      return old == 0.0 ? 0.0 : std::nextafter(std::nextafter(old, to), to);
+      const double size = is_place && farthest > 0.0 ? farthest : std::abs(old);
+      return draw.chance(0.5) ? old + off * size : old - off * size;
     });
   });
   return source;
