@@ -6,8 +6,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <vector>
 
 namespace ilaw::host {
+namespace {
+
+// The largest length in the state of a contact.
+double largest_place(const Interface& interface, int contact, const Dofs& u) {
+  const ilaw_instance_info& info = interface.info();
+  const std::vector<double> state = interface.state_at(interface.node_index_of(contact), u);
+  double largest = 0.0;
+  std::size_t at = 0;
+  for (std::uint32_t i = 0; i < info.state_variable_count; ++i) {
+    const ilaw_state_variable& variable = *info.state_variables[i];
+    for (const std::size_t end = at + variable.count; at < end; ++at)
+      if (variable.unit == std::string_view("m")) largest = std::max(largest, std::abs(state[at]));
+  }
+  return largest;
+}
+
+}  // namespace
 
 Ledger::Ledger(const Scene& scene) : scene_(scene), start_depth_(scene.interfaces.size()) {
   const Dofs u = Dofs::Zero(scene.model->mass().size());
@@ -52,8 +71,9 @@ void Ledger::add(std::size_t number, const Integrator& integrator, double speed)
     const Ends ends = ends_of(interface, contact, integrator);
     work_.note(0.5 * impulse.dot(ends.before + ends.after), integrator.steps(), interface.node_of(contact));
     const Vector change = interface.delassus(contact) * impulse;
-    const double rounded =
-        impulse.norm() * (ends.before.norm() + (ends.after - change).norm() + change.norm() + ends.carried);
+    const double from_places = largest_place(interface, contact, integrator.displacement()) / scene_.dt;
+    const double rounded = impulse.norm() * (ends.before.norm() + (ends.after - change).norm() +
+                                             change.norm() + ends.carried + from_places);
     rounded_ += rounded;
     rounded_most_ = std::max(rounded_most_, rounded + stored);
   }

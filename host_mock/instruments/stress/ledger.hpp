@@ -36,8 +36,9 @@ class Ledger {
   // The balance adds p.(v^- + v)/2 of all impulses to the kinetic and internal energies: per step
   // each of them is rounded, and so are the displacements that the forces come from.
   double balance_bound() const;
-  // Work of impulses r and what laws say of it are rounded by |r| (|v^-| + |v_free| + H |r|); stored
-  // energies by themselves. Coupled contacts agree to a residual, whose energy is counted.
+  // Work of impulses r and what laws say of it are rounded by |r| (|v^-| + |v_free| + H |r|), and by |r|
+  // |w|/h where laws find velocities from places w that they keep; stored energies by themselves. Coupled
+  // contacts agree to a residual, whose energy is counted.
   double added_bound(const Tally& tally) const;
   double dissipation_bound() const;
   // Rigid contact lets a node in by what it moves within a step; one that started inside goes no
