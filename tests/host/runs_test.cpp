@@ -89,13 +89,13 @@ void wait_for(const fs::path& file) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
 }
 
-// Ends the program by a signal once a file is there; its messages.
-std::string interrupted(const json& scene, const fs::path& folder, const std::string& begun,
+// Ends the program by a signal once files are there; its messages.
+std::string interrupted(const json& scene, const fs::path& folder, const std::vector<std::string>& begun,
                         const std::vector<std::string>& options = {}) {
   std::vector<std::string> arguments = {"run", written(scene, folder), "--out", folder.string()};
   arguments.insert(arguments.end(), options.begin(), options.end());
   const pid_t child = start_program(arguments, folder / "messages");
-  wait_for(folder / begun);
+  for (const std::string& file : begun) wait_for(folder / file);
   kill(child, SIGTERM);
   int status = 0;
   waitpid(child, &status, 0);
@@ -108,7 +108,7 @@ TEST(Sweep, EndsAtAnInterrupt) {
   const auto folder = fresh_folder();
   json scene = sliding();
   scene["time"]["end"] = 1e6;
-  interrupted(scene, folder, "mass=2/history.csv.partial",
+  interrupted(scene, folder, {"mass=1/history.csv.partial", "mass=2/history.csv.partial"},
               {"--threads", "2", "--set", "/model/points/0/mass=1,2,3"});
   for (const std::string name : {"mass=1", "mass=2"})
     EXPECT_TRUE(json_of(folder / name / "summary.json")["interrupted"]) << name;
@@ -146,7 +146,7 @@ TEST(Prestress, EndsAtAnInterrupt) {
   json scene = block_on_plane();
   scene["prestress"] = {{"tolerance", 1e-300}, {"steps", 1000000000}};
   scene["loads"] = {gravity({0, 0, -10})};
-  EXPECT_THAT(interrupted(scene, folder, "history.csv.partial"), HasSubstr("interrupted at step 0 of "));
+  EXPECT_THAT(interrupted(scene, folder, {"history.csv.partial"}), HasSubstr("interrupted at step 0 of "));
   EXPECT_TRUE(json_of(folder / "summary.json")["interrupted"]);
 }
 
