@@ -285,6 +285,10 @@ class Check {
     });
   }
 
+  // Even seeds round all places, also those at 0.
+  double farthest_of(std::uint64_t seed, double farthest) const {
+    return seed % 2 == 0 ? std::max(farthest, motion_.farthest + motion_.displacement) : farthest;
+  }
   // The largest effect of roundings of the scene, over as many twins as a bound needs.
   struct Twins {
     double farthest;
@@ -293,8 +297,8 @@ class Check {
   };
   void add_twin(Twins& twins) const {
     try {
-      RelatedRun twin(nudged(source_, twins.farthest, first_twin + static_cast<std::uint64_t>(twins.count++)),
-                      file_);
+      const std::uint64_t seed = first_twin + static_cast<std::uint64_t>(twins.count++);
+      RelatedRun twin(nudged(source_, farthest_of(seed, twins.farthest), seed), file_);
       const RelatedScene same;
       twins.effect =
           std::max(twins.effect, Comparison(motion_, run_.scene, same).with(motion_of(twin, steps_)).size);
@@ -320,7 +324,7 @@ class Check {
   bool holds_for_a_twin_of(const RelatedScene& related, const Relation& relation) const {
     const double farthest = relation.rounds_places ? moved_.farthest : 0.0;
     for (std::uint64_t seed = first_twin; seed < first_twin + most_twins; ++seed) try {
-        RelatedRun twin(nudged(related.source, farthest, seed), file_, related.begin);
+        RelatedRun twin(nudged(related.source, farthest_of(seed, farthest), seed), file_, related.begin);
         const Motion motion = motion_of(twin, steps_);
         if (Comparison(motion_, run_.scene, related).with(motion).size <= bound_of(relation)) return true;
       } catch (const std::exception&) {  // it stops: as bad as a difference
