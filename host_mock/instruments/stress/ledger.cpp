@@ -75,6 +75,7 @@ void Ledger::add(std::size_t number, const Integrator& integrator, double speed)
     const double rounded = impulse.norm() * (ends.before.norm() + (ends.after - change).norm() +
                                              change.norm() + ends.carried + from_places);
     rounded_ += rounded;
+    solved_ += 0.5 * impulse.norm() * speed;
     rounded_most_ = std::max(rounded_most_, rounded + stored);
   }
 }
@@ -141,7 +142,7 @@ double Ledger::balance_bound() const {
 }
 
 double Ledger::added_bound(const Tally& tally) const {
-  return rounding * (rounded_ + stored_) + tally.coupling_energy;
+  return rounding * (rounded_ + stored_) + tally.coupling_energy + tally.coupling_tolerance * solved_;
 }
 
 double Ledger::dissipation_bound() const { return rounding * rounded_most_; }

@@ -38,7 +38,7 @@ class Ledger {
   double balance_bound() const;
   // Work of impulses r and what laws say of it are rounded by |r| (|v^-| + |v_free| + H |r|), and by |r|
   // |w|/h where laws find velocities from places w that they keep; stored energies by themselves. Coupled
-  // contacts agree to a residual, whose energy is counted.
+  // contacts agree to a tolerance of the largest speed, or to a residual, whose energy is counted.
   double added_bound(const Tally& tally) const;
   double dissipation_bound() const;
   // Rigid contact lets a node in by what it moves within a step; one that started inside goes no
@@ -71,7 +71,7 @@ class Ledger {
   Dofs v_before_;
   std::vector<Dofs> start_depth_;  // per interface, of all nodes; empty: none is measured
   std::int64_t steps_ = 0;
-  double rounded_ = 0.0, rounded_most_ = 0.0, stored_ = 0.0;
+  double rounded_ = 0.0, rounded_most_ = 0.0, stored_ = 0.0, solved_ = 0.0;
   double size_ = 0.0, most_kinetic_ = 0.0, farthest_ = 0.0;
   double fastest_ = 0.0, worst_velocity_ = 0.0;
   Worst penetration_, work_;
