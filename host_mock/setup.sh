@@ -24,9 +24,10 @@ case ${1:-} in
 esac
 
 missing=()
+here="^installed (all|$(dpkg --print-architecture))\$"  # a package may be there for other processors, too
 for package in "${packages[@]}"; do
-  status=$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null || true)
-  [ "$status" = installed ] || missing+=("$package")
+  dpkg-query --show --showformat='${db:Status-Status} ${Architecture}\n' "$package" 2>/dev/null | grep -qE "$here" ||
+    missing+=("$package")
 done
 if [ ${#missing[@]} -eq 0 ]; then
   echo "set-up: all packages are there"
